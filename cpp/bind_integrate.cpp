@@ -86,11 +86,11 @@ static void integrate_given_finite(const CellArrays &cells, Matrix<double> displ
 
 void bind_integrate(nb::module_ &m) {
   nb::class_<CellArrays>(m, "Cells", "Cells of one type with an integration rule on the reference cell.")
-      .def(
-          nb::init<Matrix<double>, Matrix<std::int32_t>, Matrix<double>, Tensor3<double>, Vector<double>, bool, bool>(),
-          nb::arg("points").noconvert(), nb::arg("nodes").noconvert(), nb::arg("shapes").noconvert(),
-          nb::arg("derivatives").noconvert(), nb::arg("weights").noconvert(), nb::arg("axisymmetric"),
-          nb::arg("mean_dilatation"));
+      .def(nb::init<Matrix<double>, Matrix<std::int32_t>, Matrix<double>, Tensor3<double>, Vector<double>, bool, bool,
+                    std::size_t>(),
+           nb::arg("points").noconvert(), nb::arg("nodes").noconvert(), nb::arg("shapes").noconvert(),
+           nb::arg("derivatives").noconvert(), nb::arg("weights").noconvert(), nb::arg("axisymmetric"),
+           nb::arg("mean_dilatation"), nb::arg("pressures") = 0);
   m.def("strains", &strains, nb::arg("cells"), nb::arg("displacement").noconvert(),
         nb::arg("thermal").noconvert() = nb::none(),
         "Strains (cells q, 6) xx yy zz xy yz zx at the integration points, shear strains doubled, less thermal strains "

@@ -24,12 +24,13 @@ inline std::optional<std::tuple<std::size_t, double>> told(const Unsound &unsoun
 class CellArrays {
 public:
   CellArrays(Matrix<double> points, Matrix<std::int32_t> nodes, Matrix<double> shapes, Tensor3<double> derivatives,
-             Vector<double> weights, bool axisymmetric, bool mean_dilatation)
+             Vector<double> weights, bool axisymmetric, bool mean_dilatation, std::size_t pressures)
       : points(points), nodes(nodes), shapes(shapes), derivatives(derivatives), weights(weights),
-        axisymmetric(axisymmetric), mean_dilatation(mean_dilatation) {
+        axisymmetric(axisymmetric), mean_dilatation(mean_dilatation), pressures(pressures) {
     const std::size_t q = weights.shape(0), n = nodes.shape(1);
     if (q == 0 || shapes.shape(0) != q || shapes.shape(1) != n || derivatives.shape(0) != q ||
-        derivatives.shape(1) != n || derivatives.shape(2) != dim() || (dim() != 2 && (axisymmetric || dim() != 3)))
+        derivatives.shape(1) != n || derivatives.shape(2) != dim() || (dim() != 2 && (axisymmetric || dim() != 3)) ||
+        (pressures > 1 && pressures != dim() + 1) || pressures > q)
       throw nb::value_error("points, cells and rule disagree");
   }
 
@@ -39,8 +40,8 @@ public:
   std::size_t integration_points() const { return count() * weights.shape(0); }
 
   Cells view() const {
-    return {points.data(),      nodes.data(),   count(),          nodes.shape(1), shapes.data(),
-            derivatives.data(), weights.data(), weights.shape(0), mean_dilatation};
+    return {points.data(),      nodes.data(),   count(),          nodes.shape(1),  shapes.data(),
+            derivatives.data(), weights.data(), weights.shape(0), mean_dilatation, pressures};
   }
 
   State state(const std::optional<Matrix<double>> &displacement, const std::optional<Matrix<double>> &thermal) const {
@@ -89,12 +90,18 @@ public:
     nb::gil_scoped_release release;
     const std::size_t parts = cells.count < FEW_CELLS ? 1 : thread_count();
     std::vector<Unsound> unsound(parts);
-    with_kinematics<Kinematics>([&]<class Own>() {
+    const auto run = [&]<class Own>() {
       run_parts(parts, [&](std::size_t part) {
         const Rows own{std::int32_t(rows() * part / parts), std::int32_t(rows() * (part + 1) / parts)};
         unsound[part] = abut::integrate<Own>(cells, state, material, results, own);
       });
-    });
+    };
+    bool mixed = false;
+    if constexpr (Kinematics<3, false>::finite)
+      if ((mixed = pressures > 0))
+        with_kinematics<MixedStrain>(run);
+    if (!mixed)
+      with_kinematics<Kinematics>(run);
     return *std::min_element(unsound.begin(), unsound.end(),
                              [](const Unsound &a, const Unsound &b) { return a.cell < b.cell; });
   }
@@ -106,6 +113,7 @@ private:
   Tensor3<double> derivatives;
   Vector<double> weights;
   bool axisymmetric, mean_dilatation;
+  std::size_t pressures;
 };
 
 } // namespace abut

@@ -143,8 +143,9 @@ public:
 
   double reference_volume(std::size_t q) const { return volume[q]; }
   double determinant(std::size_t q) const { return points[q].det; }
+  const double *swelling() const { return cells.shapes; } // by which heat swells the cell
 
-private:
+protected:
   static constexpr int SCALED = dim == 2 && !axisymmetric ? 2 : 3; // directions that F-bar scales
 
   // The deformation gradient at a point, its determinant and inverse, the strain, and the factor of F-bar.

@@ -4,6 +4,7 @@
 #include "finite_strain.hpp"
 #include "kinematics.hpp"
 #include "materials.hpp"
+#include "mixed_strain.hpp"
 #include <algorithm>
 #include <cstdint>
 #include <type_traits>
@@ -41,11 +42,11 @@ struct Rows {
   bool has(std::int32_t i) const { return i >= first && i < last; }
 };
 
-// Nodal values (n,) of a cell at point q.
-inline double at_point(const Cells &cells, std::size_t q, const double *values) {
+// Nodal values (n,) of a cell at point q, by shape functions (rule, n).
+inline double at_point(const double *shapes, std::size_t n, std::size_t q, const double *values) {
   double sum = 0;
-  for (std::size_t i = 0; i < cells.n; ++i)
-    sum += cells.shapes[q * cells.n + i] * values[i];
+  for (std::size_t i = 0; i < n; ++i)
+    sum += shapes[q * n + i] * values[i];
   return sum;
 }
 
@@ -75,7 +76,7 @@ void mechanical_strain(const Kinematics &kinematics, const Cells &cells, std::si
   kinematics.strain(q, u, strain);
   if (!thermal)
     return;
-  const double free = at_point(cells, q, thermal);
+  const double free = at_point(kinematics.swelling(), cells.n, q, thermal);
   for (int a = 0; a < 3; ++a)
     strain[a] -= free;
 }
@@ -160,7 +161,7 @@ private:
       return std::isfinite(determinant) ? determinant : 0;
     for (std::size_t q = 0; q < cells.rule; ++q) {
       kinematics.strain(q, strain);
-      const double stretch = 1 + (state.thermal ? at_point(cells, q, state.thermal + c * n) : 0);
+      const double stretch = 1 + (state.thermal ? at_point(kinematics.swelling(), n, q, state.thermal + c * n) : 0);
       double *const at = &stress[q * STRAINS];
       tangent[q] = heated(material, Point{c, c * cells.rule + q, rows.has(own[0])}, stretch, strain, at);
       if (!tangent[q].sound)
@@ -169,6 +170,8 @@ private:
         kinematics.thicken(q, stretch * std::sqrt(1 + 2 * strain[2]));
       energy += kinematics.reference_volume(q) * tangent[q].energy;
     }
+    if constexpr (requires { kinematics.collect(stress.data()); })
+      kinematics.collect(stress.data());
     if (results.energy && rows.has(own[0]))
       results.energy[c] = energy;
     return std::nan("");

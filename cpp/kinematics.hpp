@@ -1,6 +1,7 @@
 // Kinematics: how the displacements of a cell's nodes strain it, and the nodal forces and stiffness that stresses and
 // tangents at its integration points then mean.
 #pragma once
+#include "cell_functions.hpp"
 #include "jacobian.hpp"
 #include "materials.hpp"
 #include <algorithm>
@@ -11,7 +12,7 @@ namespace abut {
 
 // Cells of one type and an integration rule on the reference cell: points (any, dim), nodes (count, n); shapes (rule,
 // n), derivatives (rule, n, dim), weights (rule). mean_dilatation: the dilatation is its mean over the cell,
-// theory (E3).
+// theory (E3). pressures: of a mixed cell, its own and eliminated, 1 or dim + 1, theory (E6); 0: no mixed cell.
 struct Cells {
   const double *points;
   const std::int32_t *nodes;
@@ -19,6 +20,10 @@ struct Cells {
   const double *shapes, *derivatives, *weights;
   std::size_t rule;
   bool mean_dilatation;
+  std::size_t pressures;
+
+  // Functions of the dilatation that counts; 0: that at each point.
+  std::size_t modes() const { return pressures ? pressures : mean_dilatation; }
 };
 
 // Small strains in space or in the plane, where the strains out of the plane are zero (what a material makes of that in
@@ -31,11 +36,13 @@ public:
 
   explicit SmallStrain(const Cells &cells)
       : cells(cells), n(cells.n), gradient(cells.rule * n * dim), hoop(axisymmetric ? cells.rule * n : 0),
-        volume(cells.rule), mean(n * dim), response(n * (STRAINS + 1) * dim) {}
+        volume(cells.rule), mean(cells.rule * n * dim), response(n * (STRAINS + 1) * dim), mixed(cells.modes() > 0),
+        functions(cells.modes(), cells.rule, dim), sums(cells.modes() * n * dim),
+        slopes(mixed ? cells.rule * n * dim : 0), places(mixed ? cells.rule * dim : 0),
+        seen(cells.pressures ? cells.rule * n : 0), scratch(cells.pressures * n) {}
 
   // Moves to the cell with nodes at x (n, dim).
   void place(const double *x) {
-    bulk = 0;
     for (std::size_t q = 0; q < cells.rule; ++q) {
       const double *shape = cells.shapes + q * n;
       volume[q] = gradients<dim>(x, n, cells.derivatives + q * n * dim, &gradient[q * n * dim]) * cells.weights[q];
@@ -48,8 +55,8 @@ public:
         volume[q] *= 2 * std::numbers::pi * r;
       }
     }
-    if (cells.mean_dilatation)
-      average();
+    if (mixed)
+      average(x);
   }
 
   // Strain at point q under displacements u (n, dim) of the nodes.
@@ -67,11 +74,11 @@ public:
       strain[a] = slope[a][a];
       strain[3 + a] = slope[a][(a + 1) % 3] + slope[(a + 1) % 3][a];
     }
-    if (!cells.mean_dilatation)
+    if (!mixed)
       return;
     double more = -(strain[0] + strain[1] + strain[2]);
     for (std::size_t j = 0; j < n * dim; ++j)
-      more += mean[j] * u[j];
+      more += mean[q * n * dim + j] * u[j];
     for (int a = 0; a < 3; ++a)
       strain[a] += more / 3;
   }
@@ -79,7 +86,7 @@ public:
   // Adds the forces (n, dim) of a stress at point q.
   void add_force(std::size_t q, const double *stress, double *force) const {
     // The mean stress works on the mean dilatation where that takes the place of the dilatation at the point.
-    const double averaged = cells.mean_dilatation ? (stress[0] + stress[1] + stress[2]) / 3 : 0, w = volume[q];
+    const double averaged = mixed ? (stress[0] + stress[1] + stress[2]) / 3 : 0, w = volume[q];
     double sigma[3][3];
     for (int a = 0; a < 3; ++a) {
       sigma[a][a] = stress[a] - averaged;
@@ -88,7 +95,7 @@ public:
     for (std::size_t i = 0; i < n; ++i) {
       const double *g = &gradient[(q * n + i) * dim];
       for (int a = 0; a < dim; ++a) {
-        double sum = averaged * mean[i * dim + a];
+        double sum = averaged * mean[(q * n + i) * dim + a];
         for (int b = 0; b < dim; ++b)
           sum += sigma[a][b] * g[b];
         force[i * dim + a] += w * sum;
@@ -107,7 +114,7 @@ public:
       double g[dim], more[dim]; // local, so that they stay in registers
       std::copy_n(&gradient[(q * n + i) * dim], dim, g);
       for (int a = 0; a < dim; ++a)
-        more[a] = cells.mean_dilatation ? (mean[i * dim + a] - dilatation(q, i, a)) / 3 : 0;
+        more[a] = mixed ? (mean[(q * n + i) * dim + a] - dilatation(q, i, a)) / 3 : 0;
       for (std::size_t k = symmetric ? i : 0; k < n; ++k) {
         const double *r = &response[k * (STRAINS + 1) * dim];
         double *out = &block[(i * n + k) * dim * dim];
@@ -132,8 +139,7 @@ public:
   // eps(u).
   void add_stiffness(std::size_t q, const Moduli &tangent, double *block) {
     const double w = volume[q], mu = tangent.mu;
-    const double lambda = cells.mean_dilatation ? -2 * mu / 3 : tangent.lambda; // what is left is deviatoric
-    bulk += w * (tangent.lambda + 2 * mu / 3);
+    const double lambda = mixed ? -2 * mu / 3 : tangent.lambda; // what is left is deviatoric
     for (std::size_t i = 0; i < n; ++i) {
       double g[dim]; // local, so that it stays in registers
       std::copy_n(&gradient[(q * n + i) * dim], dim, g);
@@ -159,15 +165,22 @@ public:
   }
 
   // Adds what the mean dilatation contributes once all points are in.
-  void finish(const Moduli &, double *block) const {
-    for (std::size_t i = 0; cells.mean_dilatation && i < n; ++i)
-      for (std::size_t k = i; k < n; ++k)
-        for (int a = 0; a < dim; ++a)
-          for (int b = 0; b < dim; ++b)
-            block[((i * n + k) * dim + a) * dim + b] += bulk * mean[i * dim + a] * mean[k * dim + b];
+  void finish(const Moduli &tangent, double *block) const {
+    const double bulk = tangent.lambda + 2 * tangent.mu / 3;
+    for (std::size_t m = 0; m < functions.count; ++m) {
+      const double *sum = &sums[m * n * dim];
+      for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t k = i; k < n; ++k)
+          for (int a = 0; a < dim; ++a)
+            for (int b = 0; b < dim; ++b)
+              block[((i * n + k) * dim + a) * dim + b] += bulk * sum[i * dim + a] * sum[k * dim + b];
+    }
   }
 
   double reference_volume(std::size_t q) const { return volume[q]; }
+
+  // Shape functions (rule, n) by which heat swells the cell: of a mixed one as far as its pressures see it.
+  const double *swelling() const { return cells.pressures ? seen.data() : cells.shapes; }
 
 private:
   // r[s][a]: stress s at point q, times its weight, by displacement a of node k under a tangent c; last the sum of the
@@ -176,7 +189,7 @@ private:
     const double *g = &gradient[(q * n + k) * dim], w = volume[q];
     double more[dim];
     for (int a = 0; a < dim; ++a)
-      more[a] = cells.mean_dilatation ? (mean[k * dim + a] - dilatation(q, k, a)) / 3 : 0, r[STRAINS * dim + a] = 0;
+      more[a] = mixed ? (mean[(q * n + k) * dim + a] - dilatation(q, k, a)) / 3 : 0, r[STRAINS * dim + a] = 0;
     for (int s = 0; s < STRAINS; ++s, c += STRAINS) {
       const double swelling = c[0] + c[1] + c[2];
       double own[dim];
@@ -203,25 +216,28 @@ private:
     return axisymmetric && a == 0 ? g + hoop[q * n + i] : g;
   }
 
-  void average() {
-    double whole = 0;
-    std::fill(mean.begin(), mean.end(), 0.0);
-    for (std::size_t q = 0; q < cells.rule; ++q) {
-      const double *g = &gradient[q * n * dim], w = volume[q];
-      whole += w;
-      for (std::size_t j = 0; j < n * dim; ++j)
-        mean[j] += w * g[j];
-      for (std::size_t i = 0; axisymmetric && i < n; ++i)
-        mean[i * dim] += w * hoop[q * n + i];
-    }
-    for (double &value : mean)
-      value /= whole;
+  // The dilatation by displacements projected on the functions of the cell with nodes at x (n, dim).
+  void average(const double *x) {
+    std::fill(places.begin(), places.end(), 0.0);
+    for (std::size_t q = 0; q < cells.rule; ++q)
+      for (std::size_t i = 0; i < n; ++i)
+        for (int a = 0; a < dim; ++a) {
+          places[q * dim + a] += cells.shapes[q * n + i] * x[i * dim + a];
+          slopes[(q * n + i) * dim + a] = dilatation(q, i, a);
+        }
+    functions.place(places.data(), volume.data());
+    functions.project(slopes.data(), volume.data(), n * dim, sums.data(), mean.data());
+    if (cells.pressures)
+      functions.project(cells.shapes, volume.data(), n, scratch.data(), seen.data());
   }
 
   const Cells &cells;
   std::size_t n;
-  std::vector<double> gradient, hoop, volume, mean, response; // mean: dilatation of the cell per displacement
-  double bulk = 0;                                            // integral of the bulk modulus
+  std::vector<double> gradient, hoop, volume, mean,
+      response; // mean: dilatation that counts at a point per displacement
+  bool mixed;
+  CellFunctions functions; // of the dilatation; sums: their factors per displacement
+  std::vector<double> sums, slopes, places, seen, scratch;
 };
 
 } // namespace abut

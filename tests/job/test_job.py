@@ -36,7 +36,7 @@ BAD = {
     "unknown body": ('body = "upper"', 'body = "uper"', "did you mean 'upper'?"),
     "nan": ("young = 210e3", "young = nan", "materials.steel.young"),
     "negative": ("young = 210e3", "young = -1", "expected a number > 0"),
-    "poisson": ("poisson = 0.3", "poisson = 0.5", "expected -1 < nu < 0.5"),
+    "poisson": ("poisson = 0.3", "poisson = 0.6", "expected -1 < nu <= 0.5"),
     "text for a number": ("young = 210e3", 'young = "stiff"', "materials.steel.young"),
     "version": ("schema = 1", "schema = 2", "expected 1, got 2"),
     "syntax": ("[[contacts]]", "[[contacts]", "not valid TOML"),

@@ -18,21 +18,21 @@ RADII, INFLATED = (1.0, 2.0), 1.6  # stretch of the inner surface
 SMOOTH = "cells of first order, h^2, and a bulk modulus of 5e4 times the shear modulus"
 
 
-def _outer(power: int) -> float:
+def outer_stretch(power: int) -> float:
     """Stretch of the outer surface at constant volume."""
     a, b = RADII
     return float(((INFLATED * a) ** power - a**power + b**power) ** (1.0 / power) / b)
 
 
-def _cylinder_pressure() -> float:
+def cylinder_pressure() -> float:
     """At which the inner surface has its stretch: int of mu (s^2 - s^-2) dr / r over the wall, s = r / R."""
-    a, b = INFLATED, _outer(2)
+    a, b = INFLATED, outer_stretch(2)
     return float(SHEAR * (np.log(a / b) + 0.5 * (b**-2 - a**-2)))
 
 
 def _sphere_pressure() -> float:
     """The same of 2 mu (s^2 - s^-4) dr / r."""
-    a, b = INFLATED, _outer(3)
+    a, b = INFLATED, outer_stretch(3)
     return float(SHEAR * (2.0 / b + 0.5 / b**4 - 2.0 / a - 0.5 / a**4))
 
 
@@ -45,7 +45,7 @@ def _rubber(mesh: Mesh, supports: list[Support], pressure: Pressure, plane: str)
 
 
 def _inflated(shape: str) -> Benchmark:
-    value = _sphere_pressure() if shape == "sphere" else _cylinder_pressure()
+    value = _sphere_pressure() if shape == "sphere" else cylinder_pressure()
 
     def model(level: int) -> Model:
         n = 2**level
@@ -79,7 +79,7 @@ def _inflated(shape: str) -> Benchmark:
         measure,
         {
             "inner stretch": Reference(INFLATED, 1e-2, source, SMOOTH),
-            "outer stretch": Reference(_outer(power), 1e-2, source, SMOOTH),
+            "outer stretch": Reference(outer_stretch(power), 1e-2, source, SMOOTH),
         },
     )  # fmt: skip
 

@@ -6,20 +6,30 @@ from collections.abc import Iterable
 
 from abut.cells import CELLS
 from abut.errors import InputError
-from abut.mesh.quadrature import BBAR, REDUCED
+from abut.materials.material import Material, linear, volume_preserving
+from abut.mesh.quadrature import BBAR, PRESSURES, REDUCED
 
-INTEGRATIONS = ("auto", "full", "reduced", "b-bar")
+INTEGRATIONS = ("auto", "full", "reduced", "b-bar", "mixed")
+LOCKING = 0.45 + 1e-9  # Poisson's ratio beyond which "auto" takes b-bar; constants' rounding aside
+SECOND = 0.4996  # the same for cells of second order, which are a few percent too stiff up to there
 
 
-def resolved(how: str, kinds: Iterable[str], plane: str | None, volume_preserving: bool) -> str:
-    """What "auto" means for a body of some cell types: "full", but where its material hardly changes its volume "b-bar" or
-    "reduced" if that is for all of them; plane stress does not lock."""
+def resolved(how: str, kinds: Iterable[str], plane: str | None, material: Material) -> str:
+    """What "auto" means for a body of some cell types: "full", but where its material hardly changes its volume "b-bar" for
+    cells of first order, "mixed" for those of second order; where it flows "reduced" if that is for all of them. Plane
+    stress does not lock."""
     if how != "auto":
         return how
-    for choice, known in (("b-bar", BBAR), ("reduced", REDUCED)):
-        if volume_preserving and plane != "stress" and all(kind in known and _locks(kind) for kind in kinds):
-            return choice
-    return "full"
+    rest, flows, kinds = linear(material), volume_preserving(material), list(kinds)
+    poisson = 0.0 if rest is None else rest.poisson
+    if plane == "stress" or not kinds:
+        return "full"
+    if all(kind in BBAR for kind in kinds) and (flows or poisson > LOCKING):
+        return "b-bar"
+    if flows and poisson < SECOND and all(kind in REDUCED and _locks(kind) for kind in kinds):
+        return "reduced"
+    locked = poisson > SECOND or (flows and all(_locks(kind) for kind in kinds))
+    return "mixed" if locked and all(kind in PRESSURES for kind in kinds) else "full"
 
 
 def _locks(kind: str) -> bool:
@@ -44,6 +54,24 @@ def check_integration(how: str, kinds: Iterable[str], plane: str | None, where: 
             )
         if plane == "stress":
             raise InputError(f"{where}: 'b-bar' has no benefit in plane stress, which does not lock; use 'full'")
+    if how == "mixed" and plane == "stress":
+        raise InputError(f"{where}: 'mixed' has no benefit in plane stress, which does not lock; use 'full'")
+    for kind in kinds if how == "mixed" else ():
+        if kind not in PRESSURES:
+            raise InputError(
+                f"{where}: 'mixed' is for {', '.join(PRESSURES)} cells, the body has {kind}, for which no pressure of its "
+                f"own is stable; use {_instead(kind)}"
+            )
+
+
+def check_incompressible(how: str, material: Material, plane: str | None, where: str) -> None:
+    """Raises InputError for a Poisson's ratio of 0.5 where cells could not move."""
+    rest = linear(material)
+    if how == "full" and plane != "stress" and rest is not None and rest.poisson == 0.5:
+        raise InputError(
+            f"{where}: a Poisson's ratio of 0.5 needs cells that can keep their volume: 'mixed', for "
+            f"{', '.join(PRESSURES)} cells"
+        )
 
 
 def _instead(kind: str) -> str:
@@ -52,5 +80,6 @@ def _instead(kind: str) -> str:
     if kind in REDUCED:
         return "'full', or 'reduced' near a Poisson's ratio of 0.5"
     if cell.degree == 1:
-        return f"'full', with {'tri6' if cell.dim == 2 else 'tet10'} cells near a Poisson's ratio of 0.5"
+        better = "tri6 or quad8" if cell.dim == 2 else "tet10, hex20 or hex27"
+        return f"'full', with {better} cells near a Poisson's ratio of 0.5"
     return "'full'"

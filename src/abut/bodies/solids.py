@@ -15,7 +15,7 @@ from abut.materials.kernel import Kernel
 from abut.materials.material import Material, compiled
 from abut.mesh.mesh import Mesh
 from abut.mesh.patches import Patches, patches
-from abut.mesh.quadrature import Rule, cell_rule
+from abut.mesh.quadrature import PRESSURES, Rule, cell_rule
 
 Array = NDArray[np.float64]
 PORTION = 2**17  # integration points that a material evaluates at once; their tangents take 300 bytes each
@@ -125,7 +125,8 @@ class Group:
         xi, weights = rule
         shapes, derivatives = shape_functions(CELLS[self.kind].code, np.ascontiguousarray(xi))
         axisymmetric, mean = solids.mesh.axisymmetric, self.integration == "b-bar"
-        return Cells(solids.points, self.nodes, shapes, derivatives, weights, axisymmetric, mean)
+        pressures = PRESSURES.get(self.kind, 0) if self.integration == "mixed" else 0
+        return Cells(solids.points, self.nodes, shapes, derivatives, weights, axisymmetric, mean, pressures)
 
     def portions(self, rule: Rule) -> Iterator[Group]:
         """Some cells after the other."""

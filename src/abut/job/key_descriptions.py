@@ -48,7 +48,7 @@ MEANINGS: dict[str, dict[str, str]] = {
     "MaterialTable": {
         "kind": "the material law",
         "young": "Young's modulus, > 0 [force/length^2]",
-        "poisson": "Poisson's ratio, between -1 and 0.5",
+        "poisson": "Poisson's ratio, between -1 and 0.5; 0.5 with integration mixed, b-bar or reduced",
         "density": "mass per volume, used by gravity [mass/length^3]",
         "expansion": "thermal expansion, used by temperature changes [1/temperature]",
     },
@@ -67,7 +67,7 @@ MEANINGS: dict[str, dict[str, str]] = {
     "HenckyTable": {
         "kind": "the material law, for finite kinematics: stress linear in the logarithmic strain",
         "young": "Young's modulus, > 0 [force/length^2]",
-        "poisson": "Poisson's ratio, between -1 and 0.5",
+        "poisson": "Poisson's ratio, between -1 and 0.5; 0.5 with integration mixed, b-bar or reduced",
         "density": "mass per undeformed volume, used by gravity [mass/length^3]",
         "expansion": "thermal expansion, used by temperature changes [1/temperature]",
     },
@@ -111,7 +111,7 @@ MEANINGS: dict[str, dict[str, str]] = {
     "PlasticTable": {
         "kind": "the material law: metal that yields (von Mises)",
         "young": "Young's modulus, > 0 [force/length^2]",
-        "poisson": "Poisson's ratio, between -1 and 0.5",
+        "poisson": "Poisson's ratio, between -1 and 0.5; 0.5 with integration mixed, b-bar or reduced",
         "yield_stress": "in uniaxial tension, or a table of [equivalent plastic strain, yield stress] from strain 0 on, "
         "linear between and constant beyond; true stresses [force/length^2]",
         "hardening": "isotropic hardening: yield stress over equivalent plastic strain, added to yield_stress "
@@ -128,9 +128,9 @@ MEANINGS: dict[str, dict[str, str]] = {
         "body": "name of the body in the mesh",
         "material": "name of the material",
         "temperature": "uniform change of temperature that strains the body [temperature]",
-        "integration": "how elements integrate their stiffness: full, reduced, or b-bar, which does not lock near Poisson's "
-        "ratio 0.5 (F-bar with kinematics finite); auto: full, but of plastic bodies b-bar (quad4, hex8) or reduced (quad8, "
-        "hex20)",
+        "integration": "how elements integrate their stiffness: full, reduced, b-bar or mixed; the last two do not lock "
+        "near Poisson's ratio 0.5 (b-bar: F-bar with kinematics finite; mixed: pressures of each cell's own); auto: full, "
+        "but where cells would lock b-bar (quad4, hex8), mixed, or in plastic bodies reduced (quad8, hex20)",
     },
     "SupportTable": {
         "on": "name of the surface or node set",

@@ -12,6 +12,8 @@ from abut.errors import InputError
 from abut.materials.evaluated import Array, Evaluated
 from abut.materials.kernel import Compiled, HyperelasticKernel, Isotropic
 
+INCOMPRESSIBLE = 1e7  # bulk over shear modulus at most: volumes change by 1e-7 p / mu, half of the digits are left
+
 
 @dataclass(frozen=True)
 class LinearElastic:
@@ -22,7 +24,8 @@ class LinearElastic:
     young : float
         Young's modulus [force per area], > 0.
     poisson : float
-        Poisson's ratio, between -1 and 0.5.
+        Poisson's ratio, between -1 and 0.5; 0.5 itself for cells that can bear it (integration "mixed", "b-bar" or
+        "reduced", or plane stress), where the bulk modulus is ``INCOMPRESSIBLE`` times that of shear.
     density : float
         Mass per volume, used by gravity.
     expansion : float
@@ -48,8 +51,8 @@ class LinearElastic:
 
     def __post_init__(self) -> None:
         checks.positive(self.young, "young")
-        if not -1.0 < checks.finite(self.poisson, "poisson") < 0.5:
-            raise InputError(f"poisson: expected -1 < nu < 0.5, got {self.poisson!r}")
+        if not -1.0 < checks.finite(self.poisson, "poisson") <= 0.5:
+            raise InputError(f"poisson: expected -1 < nu <= 0.5, got {self.poisson!r}")
         if checks.finite(self.density, "density") < 0.0:
             raise InputError(f"density: expected a number >= 0, got {self.density!r}")
         checks.finite(self.expansion, "expansion")
@@ -92,4 +95,11 @@ def lame(material: LinearElastic, plane: str | None) -> tuple[float, float]:
     mu = young / (2.0 * (1.0 + poisson))
     if plane == "stress":
         return young * poisson / (1.0 - poisson**2), mu
-    return young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), mu
+    return bulk_and_shear(young, poisson)[0] - 2.0 * mu / 3.0, mu
+
+
+def bulk_and_shear(young: float, poisson: float) -> tuple[float, float]:
+    """Moduli [force per area]; at a Poisson's ratio of 0.5 the bulk modulus is ``INCOMPRESSIBLE`` times that of shear."""
+    shear = young / (2.0 * (1.0 + poisson))
+    most = INCOMPRESSIBLE * shear
+    return (most if most * 3.0 * (1.0 - 2.0 * poisson) <= young else young / (3.0 * (1.0 - 2.0 * poisson))), shear

@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from abut._core import PointLaw, hooke
-from abut.materials.elastic import LinearElastic
+from abut.materials.elastic import LinearElastic, bulk_and_shear
 from abut.materials.kernel import Compiled, PointKernel
 from abut.materials.material import Array, Evaluated
 
@@ -92,11 +92,6 @@ class Hencky:
 
 def _hooke(material: LinearElastic) -> PointLaw:
     return hooke(*bulk_and_shear(material.young, material.poisson))
-
-
-def bulk_and_shear(young: float, poisson: float) -> tuple[float, float]:
-    """Moduli, force per area."""
-    return young / (3.0 * (1.0 - 2.0 * poisson)), young / (2.0 * (1.0 + poisson))
 
 
 def evaluated(law: PointLaw, strain: Array, history: Array, finite: bool) -> Evaluated:

@@ -13,9 +13,9 @@ import numpy as np
 from abut import checks
 from abut._core import PointLaw, j2
 from abut.errors import InputError
-from abut.materials.elastic import LinearElastic
+from abut.materials.elastic import LinearElastic, bulk_and_shear
 from abut.materials.kernel import Compiled, PointKernel
-from abut.materials.logarithmic import bulk_and_shear, evaluated
+from abut.materials.logarithmic import evaluated
 from abut.materials.material import Array, Evaluated
 
 EQUIVALENT, WORK = "equivalent_plastic_strain", "plastic_work"

@@ -102,6 +102,10 @@ REDUCED: dict[str, Callable[[], Rule]] = {
 BBAR = ("quad4", "hex8")  # types whose constant part of the dilatation is worth keeping alone
 
 
+# Pressures of a mixed cell of each type, theory (E6), (E7): 1, or 1 and one for each coordinate. More are unstable.
+PRESSURES = {"tri6": 1, "quad4": 1, "quad8": 1, "quad9": 3, "hex8": 1, "hex20": 1, "hex27": 4}
+
+
 def cell_rule(kind: str, integration: str) -> Rule:
     """The rule of the stiffness of a cell: smaller for "reduced", else ``stiffness_rule``."""
     return REDUCED[kind]() if integration == "reduced" else stiffness_rule(kind)

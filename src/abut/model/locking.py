@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from abut.cells import CELLS
 from abut.materials.material import linear
-from abut.mesh.quadrature import BBAR, REDUCED
+from abut.mesh.quadrature import BBAR, PRESSURES, REDUCED
 from abut.model.model import Model
 
 STIFF = 24.0  # bulk over shear modulus (Poisson's ratio 0.48) from which first order is some 10 % too stiff
@@ -55,5 +55,7 @@ def _cure(body: str, kind: str) -> str:
         return f"integration = \"b-bar\" for body '{body}'"
     if kind in REDUCED:
         return f"integration = \"reduced\" for body '{body}'"
-    better = {2: "quad8 or tri6", 3: "hex20 or tet10"}[CELLS[kind].dim]
-    return f"mesh body '{body}' with {better} cells, quadrilaterals and hexahedra with integration = \"reduced\""
+    if kind in PRESSURES:
+        return f"integration = \"mixed\" for body '{body}'"
+    better = {2: "tri6 or quad8", 3: "hex20, hex27 or tet10"}[CELLS[kind].dim]
+    return f"mesh body '{body}' with {better} cells, which abut then takes with a pressure of their own (tet10: as they are)"

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut import checks
-from abut.bodies.integration import check_integration, resolved
+from abut.bodies.integration import check_incompressible, check_integration, resolved
 from abut.bodies.solids import Solids
 from abut.contact.bulge import with_bulge
 from abut.contact.contactor_choice import Side
@@ -26,7 +26,7 @@ from abut.contact.sides import (
     words,
 )
 from abut.errors import InputError
-from abut.materials.material import Material, volume_preserving
+from abut.materials.material import Material
 from abut.mesh.check import check_entries
 from abut.mesh.mesh import Mesh
 from abut.model.body_forces import Load
@@ -172,8 +172,7 @@ class Model:
 
     def integration(self, solid: Solid) -> str:
         """Of one of the solids, "auto" resolved."""
-        flows = volume_preserving(solid.material)
-        return resolved(solid.integration, self._kinds(solid.body), self.plane, flows)
+        return resolved(solid.integration, self._kinds(solid.body), self.plane, solid.material)
 
     @property
     def finite(self) -> bool:
@@ -333,6 +332,7 @@ class Model:
                 raise InputError(f"solids[{i}].body: body '{solid.body}' has two materials; keep one of them")
             seen.add(solid.body)
             check_integration(solid.integration, self._kinds(solid.body), self.plane, f"solids[{i}].integration")
+            check_incompressible(self.integration(solid), solid.material, self.plane, f"solids[{i}].integration")
         for i, rigid in enumerate(self.rigid):
             if rigid.body in seen:
                 raise InputError(

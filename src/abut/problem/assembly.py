@@ -97,7 +97,7 @@ def assemble(
     problem = finite_problem(problem, backend.differentiate) if model.finite else problem
     for solid in model.solids:
         if solid.integration == "auto" and (how := model.integration(solid)) != "full":
-            note(f"body '{solid.body}': integration = \"{how}\", as plastic flow would lock its cells otherwise")
+            note(f"body '{solid.body}': integration = \"{how}\", as cells that keep their volume would lock otherwise")
     note(f"{n_free} free displacements, {sum(map(len, every))} multipliers")
     clock.mark("set-up")
     return Assembled(problem, bodies, loaded)

@@ -1,0 +1,58 @@
+"""Stability of the pressures that mixed cells have of their own: the numerical inf-sup test."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.linalg
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
+from numpy.typing import NDArray
+
+from abut._core import shape_functions
+from abut.cells import CELLS
+from abut.mesh.mesh import Mesh
+from abut.mesh.quadrature import stiffness_rule
+from abut.verify.norms import h1_matrix
+
+Array = NDArray[np.float64]
+
+
+def cell_inf_sup(mesh: Mesh, free: NDArray[np.bool_], pressures: int, length: float = 1.0) -> float:
+    """Smallest beta of beta^2 (q, q) = sup_v (q, div v)^2 / |v|^2 over the pressures of all cells, theory (E7).
+
+    pressures: of each cell, 1, or 1 and one for each coordinate; |v|: the H1 norm with ``length``; free: (n_points,), v is
+    zero at the other points.
+
+    A constant that falls as the mesh is refined means pressures that no displacement feels (Chapelle and Bathe 1993)."""
+    divergence = _divergence(mesh, pressures)[:, np.repeat(free, mesh.dim)]
+    norm = sp.kron(h1_matrix(mesh, length), sp.eye(mesh.dim), format="csc")
+    kept = np.flatnonzero(np.repeat(free, mesh.dim))
+    lifted = spla.splu(norm[kept][:, kept].tocsc()).solve(divergence.T.toarray())
+    smallest = scipy.linalg.eigvalsh(divergence @ lifted, subset_by_index=[0, 0])[0]
+    return float(np.sqrt(max(smallest, 0.0)))
+
+
+def _divergence(mesh: Mesh, pressures: int) -> sp.csc_matrix:
+    """(pressures of all cells, dim n_points): int q div v, the q of a cell orthonormal."""
+    rows, columns, values, done = [], [], [], 0
+    for block in mesh.blocks:
+        xi, weights = stiffness_rule(block.kind)
+        shapes, slopes = shape_functions(CELLS[block.kind].code, np.ascontiguousarray(xi))
+        x = mesh.points[block.nodes]
+        jacobian = np.einsum("qna,cnb->cqab", slopes, x)
+        volume = np.abs(np.linalg.det(jacobian)) * weights
+        gradient = np.einsum("cqab,qnb->cqna", np.linalg.inv(jacobian), slopes)
+        places = np.einsum("qn,cna->cqa", shapes, x)
+        places -= (np.einsum("cq,cqa->ca", volume, places) / volume.sum(axis=1)[:, None])[:, None]
+        functions = np.concatenate([np.ones((*volume.shape, 1)), places], axis=2)[:, :, :pressures]
+        root = np.linalg.cholesky(np.einsum("cqm,cq,cqk->cmk", functions, volume, functions))
+        functions = np.swapaxes(np.linalg.solve(root, np.swapaxes(functions, 1, 2)), 1, 2)
+        own = np.einsum("cqm,cq,cqna->cmna", functions, volume, gradient)
+        dofs = block.nodes[:, :, None] * mesh.dim + np.arange(mesh.dim)
+        n = own.shape[0] * own.shape[1]
+        rows.append(np.repeat(done + np.arange(n), dofs[0].size))
+        columns.append(np.repeat(dofs.reshape(len(own), -1), pressures, axis=0).ravel())
+        values.append(own.ravel())
+        done += n
+    entries = np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))
+    return sp.csc_matrix(entries, shape=(done, mesh.points.size))
