@@ -171,8 +171,8 @@ def _add_supports(model: Model, skin: _Skin) -> None:
 
 
 def _axes(model: Model, support: Support) -> list[tuple[int, object]]:
-    """Components that a support holds, and the values; all where they lie along its surface's normals."""
-    if support.normal is not None:
+    """Components that a support holds, and the values; all where they lie along its surface's normals or local axes."""
+    if support.normal is not None or support.axes is not None:
         return [(axis, lambda x: x) for axis in range(model.dim)]
     given = [(axis, getattr(support, name)) for axis, name in enumerate(COMPONENTS[: model.dim])]
     return [(axis, value) for axis, value in given if value is not None]

@@ -24,6 +24,7 @@ from abut.problem.neutral_motions import neutral_motions
 from abut.problem.preloads import LockedPreloads
 from abut.problem.problem import ContactProblem, stacked, unit_of
 from abut.problem.restraint import require_balance, require_unmoved, restraint
+from abut.problem.springs import Springs
 from abut.problem.terms import Bodies, DeadLoads, LinearBodies, SolidBodies, Term
 from abut.solution import Observer, Phase
 
@@ -52,7 +53,9 @@ def assemble(
     clock: Clock,
 ) -> Assembled:
     """The problem of a model. Raises InputError and SingularModelError for one that cannot be solved."""
-    reduced = backend.reduce(constraints)
+    reduced, sprung = backend.reduce(constraints), Springs.of(model)
+    if sprung is not None and sprung.constant:
+        reduced = reduced + sprung.tangent(np.zeros(model.mesh.points.size)).reduce(constraints)
     clock.mark("assembly")
     observe(Phase("cutting and integrating the interface"))
     every = finite_pairs(model, constraints) if model.finite else pairs(model, constraints, backend.couple)
@@ -60,6 +63,8 @@ def assemble(
     clock.mark("interface")
     observe(Phase("checking for unconstrained rigid-body motions"))
     restrained = restraint(model.mesh, constraints, every)
+    if sprung is not None:
+        restrained = restrained.helped_by(sprung.resistance(restrained.rigid.modes))
     neutral = None if model.finite else neutral_motions(restrained.rigid, restrained.steady, every)
     springs = free_mode_springs(
         restrained.rigid, restrained.everything, constraints, reduced, loaded.at_ends(model), neutral
@@ -78,7 +83,7 @@ def assemble(
         bodies = LinearBodies(backend, loaded, model.histories, model.temperatures)
     else:
         bodies = SolidBodies(model, loaded, backend)
-    beside = _beside(model, constraints, loaded)
+    beside = [*_beside(model, constraints, loaded), *([sprung] if sprung else [])]
     constant = bodies.constant and all(term.constant for term in beside)
     problem = ContactProblem(
         model=model,
