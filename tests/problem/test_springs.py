@@ -48,6 +48,7 @@ def test_a_column_on_its_bed(spring, cell):
     step = solution.steps[-1]
     assert step.springs["bed"] == pytest.approx([0.0, 0.0, 10.0], abs=1e-7)
     assert step.reaction[2] == pytest.approx(10.0, rel=EXACT)
+    assert step.stress[:, 2] == pytest.approx(-10.0 / AREA, rel=1e-6)  # on the bed too
     assert all(check.passed for check in solution.certificate)
 
 

@@ -84,7 +84,7 @@ def assemble(
     else:
         bodies = SolidBodies(model, loaded, backend)
     beside = [*_beside(model, constraints, loaded), *([sprung] if sprung else [])]
-    constant = bodies.constant and all(term.constant for term in beside)
+    constant = _is_constant(model, [bodies, *beside])
     problem = ContactProblem(
         model=model,
         terms=(bodies, *beside),
@@ -104,6 +104,12 @@ def assemble(
     note(f"{n_free} free displacements, {sum(map(len, every))} multipliers")
     clock.mark("set-up")
     return Assembled(problem, bodies, loaded)
+
+
+def _is_constant(model: Model, terms: Sequence[Term]) -> bool:
+    """Whether the stiffness is, and can be condensed: half a bolt that a force draws together, and contact alone holds,
+    moves freely otherwise."""
+    return all(term.constant for term in terms) and all(preload.force is None for preload in model.preloads)
 
 
 def _beside(model: Model, constraints: Constraints, loaded: Loads) -> list[Term]:
