@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from abut.benchmarks.record import Benchmark, Reference
@@ -78,7 +80,7 @@ def _vdi(size: str) -> Benchmark:
 
     def model(level: int) -> Model:
         n = 2**level
-        radii = [*np.linspace(hole / 2, head / 2, 4 * n + 1)[:-1], *np.geomspace(head / 2, outer / 2, 10 * n + 1)]
+        radii: Any = [*np.linspace(hole / 2, head / 2, 4 * n + 1)[:-1], *np.geomspace(head / 2, outer / 2, 10 * n + 1)]
         parts = {
             "bolt": rectangle((0.0, bolt / 2), (0.0, clamped / 2), (2, 8), "quad8"),
             "plate": rectangle((0.0, 1.0), (0.0, clamped / 2), (radii, 14 * n), "quad8"),
