@@ -14,7 +14,8 @@ from abut.contact.nodal_recovery import averages
 from abut.contact.symmetry_planes import evened
 from abut.mesh.make import box, join, rectangle
 from abut.problem.constraints import supports
-from abut.problem.contact_pairs import Pair, pair
+from abut.problem.contact_pairs import pair
+from abut.problem.pair import Pair
 from models.pressure import bent, quarter_ball
 from models.surfaces import turned
 

@@ -17,8 +17,8 @@ from abut.linear.krylov import fgmres
 from abut.linear.multigrid import hierarchy
 from abut.linear.schur_preconditioner import interfaces, schur_inverse, selection
 from abut.mesh import make
-from abut.problem.contact_pairs import Pair
 from abut.problem.linearised import Linearised
+from abut.problem.pair import Pair
 from models.rigid import glued
 from models.sliding import FIRST, SOFT, THEN, arched, bent, finite, turned
 

@@ -20,7 +20,8 @@ from abut.linear.direct import solve
 from abut.linear.repeated import Repeated
 from abut.materials.material import OwnMaterial
 from abut.mesh.make import box, join, rectangle
-from abut.problem.terms import Motion, SolidBodies
+from abut.problem.body_terms import SolidBodies
+from abut.problem.terms import Motion
 
 RUBBER = abut.NeoHooke(2.0, 0.3)
 BLOCK = join({"body": rectangle((0.0, 2.0), (0.0, 1.0), (4, 2), "quad8")})

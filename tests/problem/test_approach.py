@@ -11,7 +11,8 @@ import abut
 from abut.mesh import make
 from abut.problem.approach import approach_slip
 from abut.problem.constraints import supports
-from abut.problem.contact_pairs import Pair, pairs
+from abut.problem.contact_pairs import pairs
+from abut.problem.pair import Pair
 
 CELLS = 30
 

@@ -19,7 +19,7 @@ from abut.contact.geometry import full_moments, split_at_creases
 from abut.contact.nodal_recovery import at_points
 from abut.contact.rim import rim
 from abut.model.contact import KINDS
-from abut.problem.contact_pairs import Pair
+from abut.problem.pair import Pair
 from abut.solution import Check
 
 BALANCE = 1e-9  # of forces, over the contact force; of moments, over force times the contactor's extent

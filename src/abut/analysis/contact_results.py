@@ -38,7 +38,7 @@ from abut.contact.symmetry_planes import evened
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
 from abut.model import LAWS, METHODS
-from abut.problem.contact_pairs import Pair
+from abut.problem.pair import Pair
 from abut.solution import Check, ContactResult, PressureStatistics, Resultant
 from abut.solution.state import OPEN
 

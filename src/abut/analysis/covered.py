@@ -17,10 +17,10 @@ from abut.contact.symmetry_planes import Planes
 from abut.contact.tangential import SlipOperators, target_operators
 from abut.problem.adjusted_gaps import BARELY
 from abut.problem.balance import Balance
-from abut.problem.contact_pairs import Pair, planes_of
+from abut.problem.contact_pairs import planes_of
 from abut.problem.current import Current
 from abut.problem.finite import FIT, FiniteProblem
-from abut.problem.friction_rows import Slip
+from abut.problem.pair import Pair, Slip
 from abut.problem.problem import CONTACTS
 from abut.solution.state import State
 

@@ -9,7 +9,7 @@ from abut.contact.geometry import nodal_normals, split_at_creases
 from abut.contact.rim import rim
 from abut.errors import InputError
 from abut.mesh.surface import Surface
-from abut.problem.contact_pairs import Pair
+from abut.problem.pair import Pair
 
 ACROSS = np.cos(np.deg2rad(45.0))  # of the angle between an edge's outward direction and where the other side leans to
 TURNED = 1e-6  # sine of an angle from which on surfaces lean

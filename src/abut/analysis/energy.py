@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.problem.balance import Balance
-from abut.problem.contact_pairs import Pair
+from abut.problem.pair import Pair
 from abut.solution import ContactResult
 from abut.solution.energy import Energy
 

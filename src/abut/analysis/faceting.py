@@ -16,7 +16,7 @@ from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.model.contact import GEOMETRIES
 from abut.problem.constraints import Constraints
-from abut.problem.contact_pairs import Pair
+from abut.problem.pair import Pair
 
 MIDDLE = 2.0 / 3.0  # weight of a segment's middle; its corners share the rest: exact for parabolas on lines and squares
 HELD = 1e-9  # share of an axis held at a point below which it is free there

@@ -11,7 +11,7 @@ from abut.contact.geometry import by_kind, function_count, nodal_normals
 from abut.contact.nodal_recovery import facet_node_values
 from abut.contact.point_values import Recovery
 from abut.contact.smooth_friction import slip_of
-from abut.problem.contact_pairs import Pair
+from abut.problem.pair import Pair
 from abut.solution import Check, FrictionResult
 from abut.solution.state import CLOSED, OPEN, SLIPPING
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from abut.contact.geometry import area_vectors, facet_sizes
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
-from abut.problem.contact_pairs import Pair
+from abut.problem.pair import Pair
 
 PLANE = 1e-6  # sine of an angle between facets of one plane
 

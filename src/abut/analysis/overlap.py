@@ -11,7 +11,7 @@ from abut.analysis.faceting import misfit, unseen
 from abut.analysis.oscillation import CLOSED
 from abut.cells import MAX_FACET_NODES
 from abut.contact.geometry import facet_sizes, full_moments
-from abut.problem.contact_pairs import Pair
+from abut.problem.pair import Pair
 
 SOLVED = 1e-8  # of the largest change of a gap: overlaps below are left by the solver
 

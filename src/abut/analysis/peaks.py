@@ -12,7 +12,7 @@ from abut.analysis.oscillation import CLOSED, Graph, excluded
 from abut.analysis.statistics import SUPPORTED
 from abut.contact.geometry import facet_sizes
 from abut.mesh.surface import Surface
-from abut.problem.contact_pairs import Pair
+from abut.problem.pair import Pair
 
 FARTHEST = 12  # facets of the contactor to one of the target beyond which nobody counts
 LEAST = 0.05  # of the largest pressure: what is carried by peaks alone counts as this much

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from abut.analysis.oscillation import CLOSED, Graph
 from abut.contact.geometry import split_at_creases
-from abut.problem.contact_pairs import Pair
+from abut.problem.pair import Pair
 
 MOSTLY = 0.5  # covered share of a point from which on it could carry pressure
 FARTHEST = 10  # facets beyond which nobody counts

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.contact.contactor_choice import Side, choose, shows_facets
-from abut.problem.contact_pairs import Pair
+from abut.problem.pair import Pair
 from abut.solution import Check
 
 LIMIT = 0.045  # seen where contact is five facets wide to each side: above it the pressure is off by 4 % or more

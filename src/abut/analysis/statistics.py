@@ -16,7 +16,7 @@ from abut.contact.coupling import Coupling
 from abut.contact.geometry import by_kind, full_moments, node_coordinates, pressure_kind
 from abut.contact.nodal_recovery import Averages
 from abut.mesh.surface import Surface
-from abut.problem.contact_pairs import Pair
+from abut.problem.pair import Pair
 from abut.solution import PressureStatistics, Resultant
 
 SUPPORTED = 0.5 - 1e-6  # covered share of a point's support from which on its pressure counts

@@ -11,8 +11,8 @@ from abut.diagnosis.finding import Finding
 from abut.errors import SingularModelError
 from abut.model import Model
 from abut.problem.constraints import Constraints
-from abut.problem.contact_pairs import Pair
 from abut.problem.held_multipliers import HELD
+from abut.problem.pair import Pair
 
 MOST, ALL = 0.5, 1.0 - 1e-9  # share of the contactor's nodes: a symmetry plane across a contact holds fewer
 

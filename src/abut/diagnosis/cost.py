@@ -13,7 +13,7 @@ from abut.linear.cost_model import FOUND, LARGE, LARGE_FINITE, LARGE_ON_MANY, ME
 from abut.linear.direct import available_memory
 from abut.model import Model
 from abut.problem.constraints import Constraints
-from abut.problem.contact_pairs import Pair
+from abut.problem.pair import Pair
 
 
 @dataclass(frozen=True)

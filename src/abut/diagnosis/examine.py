@@ -21,8 +21,9 @@ from abut.errors import AbutError, InputError
 from abut.mesh.exterior import exterior
 from abut.model import Contact, Model
 from abut.problem.constraints import Constraints, supports
-from abut.problem.contact_pairs import Pair, pair
+from abut.problem.contact_pairs import pair
 from abut.problem.finite_pairs import finite_pair
+from abut.problem.pair import Pair
 
 
 def check(model: Model) -> Report:

@@ -14,8 +14,8 @@ from abut.model import Model
 from abut.model.conditions import weights
 from abut.model.friction import FrictionValues
 from abut.problem.constraints import Constraints
-from abut.problem.contact_pairs import Pair
 from abut.problem.loads import loads
+from abut.problem.pair import Pair
 from abut.problem.restraint import Restraint, restraint
 
 HALVINGS = 10  # of the range in which a coefficient is looked for: to a thousandth

@@ -18,7 +18,7 @@ from abut.mesh.facets import bodies_at
 from abut.mesh.surface import Surface
 from abut.model import Contact, Model
 from abut.model.offset import smallest_offset
-from abut.problem.contact_pairs import Pair
+from abut.problem.pair import Pair
 
 BINS, WIDTH = 8, 30  # of the histogram: bars, and characters of the longest
 DEEP = 0.5  # overlap over facet size that is hardly meant

@@ -13,10 +13,10 @@ from abut.errors import SingularModelError
 from abut.model import Model
 from abut.model.conditions import weights
 from abut.problem.constraints import Constraints
-from abut.problem.contact_pairs import Pair
 from abut.problem.free_modes import free_mode_springs
 from abut.problem.loads import loads
 from abut.problem.neutral_motions import neutral_motions
+from abut.problem.pair import Pair
 from abut.problem.restraint import Restraint, require_held, restraint
 from abut.problem.rigid_modes import each_motion, free_motions
 

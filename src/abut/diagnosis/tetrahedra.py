@@ -8,7 +8,7 @@ from abut.contact.sides import words
 from abut.diagnosis.finding import Finding
 from abut.mesh.facets import bodies_at
 from abut.model import Model
-from abut.problem.contact_pairs import Pair
+from abut.problem.pair import Pair
 
 
 def tetrahedra(model: Model, pair: Pair) -> list[Finding]:

@@ -22,8 +22,8 @@ from abut.linear.schur_preconditioner import half_spaces, interfaces
 from abut.linear.solver import Prepared
 from abut.linear.static_condensation import condense
 from abut.mesh.mesh import Mesh
-from abut.problem.contact_pairs import Pair
 from abut.problem.linearised import Linearised
+from abut.problem.pair import Pair
 from abut.problem.problem import ContactProblem, Problem
 
 MANY = 200  # displacements that move many points each, from which on multigrid no longer pays

@@ -19,7 +19,7 @@ from abut.linear.static_condensation import LARGEST
 from abut.mesh.mesh import Mesh
 from abut.mesh.shapes import ratios
 from abut.model import Model
-from abut.problem.contact_pairs import Pair
+from abut.problem.pair import Pair
 
 ASSEMBLY = {  # seconds a cell
     "tri3": 1.0e-6, "tri6": 2.5e-6, "quad4": 1.5e-6, "quad8": 4e-6, "quad9": 5e-6, "tet4": 1.5e-6, "tet10": 1.2e-5,

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from abut.linear.schur_preconditioner import Apply, PressureBlock, schur_inverse, selection, soft_inverse
 from abut.linear.sliding_rows import Reduced, reduced
-from abut.problem.contact_pairs import Pair
 from abut.problem.linearised import Rows
+from abut.problem.pair import Pair
 from abut.types import Sparse
 
 ACCURACY, ITERATIONS = 0.1, 30  # of the pressures' preconditioner where rows are no multiples of the operator's

@@ -21,8 +21,8 @@ from abut.linear.multigrid import Hierarchy, hierarchy
 from abut.linear.schur_preconditioner import Apply, PressureBlock, pressure_block
 from abut.linear.solver import ACCURATE, Count, NotConverged, Prepared, Vector
 from abut.linear.transposed import Coupled, by_iterations
-from abut.problem.contact_pairs import Pair
 from abut.problem.linearised import Linearised, Rows
+from abut.problem.pair import Pair
 from abut.problem.problem import ContactProblem, Problem
 
 RESTART, CYCLES = 100, 3

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from abut.contact.geometry import facet_stiffness
 from abut.contact.pressure_space import PressureSpace
 from abut.linear.fractional import inverse_root
-from abut.problem.contact_pairs import Pair
+from abut.problem.pair import Pair
 from abut.types import Sparse
 
 CONTINUOUS = ("P1", "P2", "dual", "dual-P1")

@@ -14,8 +14,8 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut.problem.contact_pairs import Pair
 from abut.problem.linearised import Rows
+from abut.problem.pair import Pair
 from abut.types import Sparse
 
 STRAIGHT = 1e-9  # how much of a turn of the slip its row may see and count as none

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from abut.errors import SingularModelError
 from abut.linear import direct
 from abut.linear.dense import cholesky, dense
-from abut.problem.contact_pairs import Pair
 from abut.problem.linearised import Linearised
+from abut.problem.pair import Pair
 from abut.problem.problem import ContactProblem, Laws, Problem
 from abut.solution.state import State
 

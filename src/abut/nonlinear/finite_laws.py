@@ -13,10 +13,10 @@ from abut.contact.laws import ConstraintFunction, Law, LawState
 from abut.contact.smooth_friction import SmoothCoulomb
 from abut.nonlinear.friction_newton import friction_laws, next_status
 from abut.nonlinear.iteration import Increment
-from abut.problem.contact_pairs import Pair
 from abut.problem.finite import bare
 from abut.problem.laws import LawRows, at_multipliers
 from abut.problem.linearised import Linearised
+from abut.problem.pair import Pair
 from abut.solution.state import CLOSED, OPEN, State
 
 SHORTEST = 1e-9  # first step over the facet size, in the search for a gap that meets a pressure

@@ -12,8 +12,8 @@ from abut.linear.solver import Prepared
 from abut.nonlinear.friction_newton import Course, Status, newton
 from abut.nonlinear.friction_search import search
 from abut.nonlinear.iteration import Found, Increment
-from abut.problem.contact_pairs import Pair
 from abut.problem.linearised import Linearised
+from abut.problem.pair import Pair
 from abut.solution import Iteration
 from abut.solution.state import CLOSED, State
 

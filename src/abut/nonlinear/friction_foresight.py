@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from abut.linear.solver import Prepared
 from abut.nonlinear.exact import MOST, STRIDE, TOLD
 from abut.nonlinear.iteration import Increment, advance, largest_force
-from abut.problem.contact_pairs import Pair
 from abut.problem.laws import LawRows
 from abut.problem.linearised import Linearised
+from abut.problem.pair import Pair
 from abut.solution.state import CLOSED, OPEN, State
 
 ENOUGH = 0.1  # reduction of the residual that a solution at least aims at

@@ -17,8 +17,8 @@ from abut.linear.solver import Prepared
 from abut.nonlinear.cones import Scaling, depth, longest, mirrored, product, quotient, scaling, times
 from abut.nonlinear.interior_point import softness
 from abut.nonlinear.iteration import advance
-from abut.problem.contact_pairs import Pair
 from abut.problem.laws import LawRows
+from abut.problem.pair import Pair
 from abut.solution.state import State
 
 STEEPEST = 100.0  # coefficient of friction that stands for surfaces that never slip

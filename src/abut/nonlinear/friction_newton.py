@@ -22,9 +22,9 @@ from abut.nonlinear.iteration import (
     points,
     report,
 )
-from abut.problem.contact_pairs import Pair
 from abut.problem.laws import LawRows, at_multipliers, giving
 from abut.problem.linearised import Linearised
+from abut.problem.pair import Pair
 from abut.solution import Iteration
 from abut.solution.state import CLOSED, OPEN, SLIPPING, State
 

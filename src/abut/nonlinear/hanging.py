@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.problem.contact_pairs import Pair
+from abut.problem.pair import Pair
 from abut.problem.problem import ContactProblem
 from abut.solution.state import State
 

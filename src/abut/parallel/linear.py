@@ -26,8 +26,8 @@ from abut.parallel.matrix import Distributed
 from abut.parallel.partition import Layout
 from abut.parallel.systems import FACTORS, Answer, Conditions
 from abut.parallel.team import Team
-from abut.problem.contact_pairs import Pair
 from abut.problem.linearised import Linearised, Rows
+from abut.problem.pair import Pair
 from abut.problem.problem import ContactProblem, Problem
 from abut.types import Sparse
 

@@ -14,8 +14,8 @@ from abut.contact.function_places import at_samples
 from abut.contact.pressure_space import PressureSpace
 from abut.errors import InputError
 from abut.mesh.surface import Surface
-from abut.problem.contact_pairs import Pair
 from abut.problem.dual_functions import Mixture, mixed_part
+from abut.problem.pair import Pair
 
 BARELY = 0.01  # share of a function that must be covered for it to carry a pressure
 

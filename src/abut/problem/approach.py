@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
 from abut.contact.pressure_space import PressureSpace
-from abut.problem.contact_pairs import Pair
+from abut.problem.pair import Pair
 
 STEEP = 0.5  # cosine between a normal and the direction of approach: beyond 60 degrees as at 60
 NO_WAY = 1e-6  # of a mean of unit vectors that cancel each other, or are all held

@@ -12,20 +12,22 @@ from abut.errors import InputError
 from abut.model import Model
 from abut.model.conditions import weights
 from abut.problem.backend import Backend
+from abut.problem.body_terms import Bodies, DeadLoads, LinearBodies, SolidBodies
 from abut.problem.clock import Clock
 from abut.problem.constraints import Constraints, supports
-from abut.problem.contact_pairs import Pair, pairs
+from abut.problem.contact_pairs import pairs
 from abut.problem.finite import finite_problem
 from abut.problem.finite_pairs import finite_pairs
 from abut.problem.follower_loads import FollowerLoads
 from abut.problem.free_modes import free_mode_springs
 from abut.problem.loads import Loads, followers, loads
 from abut.problem.neutral_motions import neutral_motions
+from abut.problem.pair import Pair
 from abut.problem.preloads import LockedPreloads
 from abut.problem.problem import ContactProblem, stacked, unit_of
 from abut.problem.restraint import require_balance, require_unmoved, restraint
 from abut.problem.springs import Springs
-from abut.problem.terms import Bodies, DeadLoads, LinearBodies, SolidBodies, Term
+from abut.problem.terms import Term
 from abut.solution import Observer, Phase
 
 

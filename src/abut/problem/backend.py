@@ -19,19 +19,8 @@ from abut.contact.moving_normals import MovingNormals
 from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.problem.constraints import Constraints
-from abut.types import Operator, Sparse
-
-
-class Tangent(Protocol):
-    """A tangent stiffness over all points."""
-
-    def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Nodal forces under displacements of all points, both (dim n_points,) or (dim n_points, k)."""
-        ...
-
-    def reduce(self, constraints: Constraints) -> Operator:
-        """The same on the free displacements, (n_free, n_free): its shape, diagonal, sums and products."""
-        ...
+from abut.problem.terms import Tangent
+from abut.types import Sparse
 
 
 @dataclass(frozen=True)

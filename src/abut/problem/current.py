@@ -21,12 +21,12 @@ from abut.contact.rim import Rim, goes_on
 from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.problem.adjusted_gaps import BARELY, with_adjusted
-from abut.problem.contact_pairs import Pair
 from abut.problem.current_friction import Rubbing, Tangents, rub_in_plane, rub_in_space
 from abut.problem.dual_functions import Mixed, Mixture, dual_share, inner_now, mixed_part
 from abut.problem.edge_functions import Following, led
 from abut.problem.first_touch import Sides, apart
 from abut.problem.gap_fit import MovedSides, Sight, fit_change
+from abut.problem.pair import Pair
 from abut.problem.slip_points import Past, SlipPoints, slip_now
 from abut.problem.tangent_frames import Frames, anchors, tangents_2d
 from abut.types import Sparse

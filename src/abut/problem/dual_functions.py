@@ -18,8 +18,8 @@ from abut.contact.geometry import beside_others, full_moments
 from abut.contact.pressure_space import PressureSpace, inner_facets, partly_dual
 from abut.contact.rim import ends_on_target, goes_on, rim
 from abut.mesh.surface import Surface
-from abut.problem.contact_pairs import WHOLE, Pair
 from abut.problem.current_friction import Rubbing, Tangents
+from abut.problem.pair import WHOLE, Pair
 from abut.problem.slip_points import SlipNow
 from abut.types import Sparse
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from abut.contact.coupling import Coupling
 from abut.contact.pressure_space import NO_SUPPORT, WEAK_SUPPORT, PressureSpace, beside, covered_share, leaders, only
 from abut.mesh.surface import Surface
-from abut.problem.contact_pairs import Pair
+from abut.problem.pair import Pair
 
 MARGIN = 0.2  # of the least share, by which it may be missed at the end of a step that began with a guess of it
 

@@ -18,10 +18,11 @@ from abut.contact.pressure_space import DUAL_P1
 from abut.model.conditions import weights
 from abut.model.offset import offsets
 from abut.problem.adjusted_gaps import BARELY, taken_off
-from abut.problem.contact_pairs import Pair, reach_of
+from abut.problem.contact_pairs import reach_of
 from abut.problem.current import ContactNow, Current, Place
 from abut.problem.edge_functions import handed_over
 from abut.problem.linearised import Expansion, Linearised, by_pair
+from abut.problem.pair import Pair
 from abut.problem.problem import TOUCHING, ContactProblem, stacked, unit_of
 from abut.problem.slip_points import Past, SlipPoints
 from abut.problem.step_error import LANDED, PairEnd, landed

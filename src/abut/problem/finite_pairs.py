@@ -15,10 +15,10 @@ from abut.contact.tangential import frames, slip_operators
 from abut.model import Contact, Model
 from abut.model.friction import friction_values
 from abut.problem.constraints import Constraints
-from abut.problem.contact_pairs import Pair, pair, reach_of
+from abut.problem.contact_pairs import pair, reach_of
 from abut.problem.dual_functions import Mixture
-from abut.problem.friction_rows import Slip
 from abut.problem.held_multipliers import held, without_held
+from abut.problem.pair import Pair, Slip
 from abut.problem.relative_motion import passing
 from abut.problem.scales import scales
 

@@ -13,12 +13,12 @@ from abut.errors import InputError
 from abut.model import Load, Model, Moment, Pressure
 from abut.model.conditions import weights
 from abut.model.coupling import in_line
-from abut.problem.backend import Serial, Tangent
+from abut.problem.backend import Serial
 from abut.problem.constraints import Constraints
 from abut.problem.loads import followers, force_and_moment
 from abut.problem.mean_turn import Spread, spread
 from abut.problem.rigid_bodies import RigidBody
-from abut.problem.terms import Motion, Share
+from abut.problem.terms import Motion, Share, Tangent
 from abut.types import Array, Sparse
 
 

@@ -14,6 +14,7 @@ from abut.contact.tangential import SlipOperators, frames
 from abut.mesh.surface import Surface
 from abut.problem.constraints import Constraints
 from abut.problem.held_multipliers import NO_EFFECT, row_norms
+from abut.problem.pair import Slip
 from abut.problem.relative_motion import passing
 from abut.types import Sparse
 
@@ -27,21 +28,6 @@ class Sides:
     target: Surface
     at_facets: NDArray[np.float64]
     reach: float
-
-
-@dataclass(frozen=True)
-class Slip:
-    """What makes tangential rows. operators: by facets; tangents: (n_functions, dim - 1, dim), normals: (n_functions, dim)
-    from target to contactor, unit, at the place of each function of the pressure, ``points`` (n_functions, dim);
-    at_facets: (n_facets, 9, dim) normals of the contactor, None for large sliding; area: (n_functions,) by which weighted
-    slips are divided, None for int H_k as it is."""
-
-    operators: SlipOperators
-    tangents: NDArray[np.float64]
-    points: NDArray[np.float64]
-    normals: NDArray[np.float64]
-    at_facets: NDArray[np.float64] | None = None
-    area: NDArray[np.float64] | None = None
 
 
 @dataclass(frozen=True)

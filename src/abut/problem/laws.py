@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from abut.contact.laws import Law, LawResult, LawState
 from abut.errors import InputError
-from abut.problem.contact_pairs import Pair, PairPoints
+from abut.problem.pair import Pair, PairPoints
 from abut.types import Sparse
 
 Vector = NDArray[np.float64]

@@ -11,8 +11,8 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut.problem.contact_pairs import Pair
 from abut.problem.laws import LawRows
+from abut.problem.pair import Pair
 from abut.problem.restraint import Restraint
 from abut.problem.terms import Share
 from abut.solution.state import State

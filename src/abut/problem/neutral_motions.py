@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from abut.contact.geometry import nodal_normals
 from abut.errors import InputError
 from abut.mesh.surface import Surface
-from abut.problem.contact_pairs import Pair
+from abut.problem.pair import Pair
 from abut.problem.rigid_modes import FREE, RigidModes, free_motions
 from abut.types import Array
 

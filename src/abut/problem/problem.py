@@ -14,10 +14,11 @@ from abut.model import Model
 from abut.model.conditions import weights
 from abut.problem.approach import approach_slip
 from abut.problem.constraints import Constraints
-from abut.problem.contact_pairs import Pair, with_plain_functions
+from abut.problem.contact_pairs import with_plain_functions
 from abut.problem.free_modes import FreeModeSprings
 from abut.problem.laws import LawRows
 from abut.problem.linearised import Linearised
+from abut.problem.pair import Pair
 from abut.problem.restraint import Restraint
 from abut.problem.terms import Motion, Share, Term
 from abut.solution.state import State, at_rest

@@ -11,14 +11,13 @@ from scipy.optimize import nnls
 
 from abut.errors import SingularModelError
 from abut.mesh.mesh import Mesh
-from abut.problem.constraints import Constraints
-from abut.problem.contact_pairs import Pair
+from abut.problem.constraints import Constraints, resistance_of_supports
+from abut.problem.pair import Pair
 from abut.problem.rigid_modes import (
     RigidModes,
     describe,
     free_motions,
     resistance_of_rows,
-    resistance_of_supports,
     rigid_modes,
     simple_motions,
 )

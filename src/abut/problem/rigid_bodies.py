@@ -16,7 +16,7 @@ from abut.model import Coupling, Model
 from abut.model.conditions import History, Rigid
 from abut.problem.mean_turn import mean_turn
 from abut.problem.rigid_modes import motions
-from abut.types import Sparse
+from abut.types import Array, Sparse
 
 LOOSE = 1e-12  # square of what a unit unknown moves points by, over the largest, that counts as nothing
 SLIGHT = 1e-6  # of loads: what rounding may lose
@@ -236,3 +236,36 @@ def _body(model: Model, rigid: Rigid | Coupling) -> RigidBody:
     if model.finite and not body.mean:  # so that translations do not depend on finite turns
         return replace(body, centre=reference)
     return body
+
+
+@dataclass(frozen=True)
+class Rows:
+    """matrix @ unknowns = values: matrix (m, n) sparse, values (m, n_histories)."""
+
+    matrix: Sparse
+    values: Array
+
+
+def body_rows(
+    body: RigidBody, histories: Sequence[History], free: Sparse, prescribed: Array, columns: NDArray[np.int64]
+) -> Rows:
+    """What is prescribed of a body, then what holds its points to it, theory (F13). free: (dim n_points, n) displacements by
+    the unknowns, of which ``columns`` are the body's own; prescribed: (dim n_points, n_histories) the rest of them."""
+    given, values = body.prescribed(histories)
+    dim = body.points.shape[1]
+    dofs = (dim * body.nodes[:, None] + np.arange(dim)).ravel()
+    if body.mean:
+        by_points = sp.csr_matrix(given @ body.spreading().T)
+        return Rows((by_points @ free[dofs]).tocsr(), values - by_points @ prescribed[dofs])
+    loose = np.zeros((0, given.shape[1])) if isinstance(body.rigid, Rigid) else body.loose(given)
+    shift = sp.csr_matrix(
+        (np.ones(len(columns)), (np.arange(len(columns)), columns)), shape=(len(columns), free.shape[1])
+    )
+    matrix = sp.csr_matrix(np.concatenate([given, loose])) @ shift
+    values = np.concatenate([values, np.zeros((len(loose), values.shape[1]))])
+    if body.whole:
+        return Rows(matrix, values)
+    kept = dofs.reshape(body.points.shape)[:, body.follow].ravel()
+    moved = body.moved(body.points)[:, body.follow].reshape(len(kept), -1)
+    following = (free[kept] - sp.csr_matrix(moved) @ shift).tocsr()
+    return Rows(sp.vstack([matrix, following], format="csr"), np.concatenate([values, -prescribed[kept]]))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.sparse as sp
@@ -13,9 +12,6 @@ from scipy.sparse.csgraph import connected_components
 
 from abut.mesh.mesh import Mesh
 from abut.types import Sparse
-
-if TYPE_CHECKING:
-    from abut.problem.constraints import Constraints
 
 FREE = 1e-7  # resistance, relative to the strongest, below which a motion counts as free
 
@@ -80,12 +76,6 @@ def near_null(mesh: Mesh, rigid: RigidModes) -> NDArray[np.float64]:
     """(dim n_points, k) motions that strain bodies least, which multigrid must not lose: the rigid ones; of rings those of
     the plane, since shifts and turns of a section strain a ring little, but for near the axis."""
     return (rigid_modes(replace(mesh, axisymmetric=False)) if mesh.axisymmetric else rigid).together
-
-
-def resistance_of_supports(rigid: RigidModes, constraints: Constraints) -> NDArray[np.float64]:
-    """Gram matrix of what supports, equations and rigid bodies take out of the rigid motions."""
-    taken = constraints.taken(rigid.modes)
-    return np.asarray(taken.T @ taken / max(1.0, float(constraints.free.shape[0] - constraints.free.shape[1])))
 
 
 def resistance_of_rows(rigid: RigidModes, rows: Sparse) -> NDArray[np.float64]:

@@ -15,8 +15,8 @@ from abut.mesh.quadrature import facet_rule
 from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.model.spring import Spring, Table
-from abut.problem.backend import Serial, Tangent
-from abut.problem.terms import Motion, Share
+from abut.problem.backend import Serial
+from abut.problem.terms import Motion, Share, Tangent
 from abut.types import Array, Sparse
 
 ONE = 1e-12  # distance of both ends of a spring, over the model's size, that gives no direction

@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.bodies.assemble import is_symmetric
-from abut.bodies.solids import TemperatureChange
-from abut.bodies.stress import PointStress
-from abut.model import History as Amplitude
-from abut.model import Model
-from abut.model.conditions import weights
-from abut.problem.backend import Backend, Tangent
-from abut.problem.loads import Loads
+from abut.problem.constraints import Constraints
+from abut.types import Operator
 
 Vector = NDArray[np.float64]
+
+
+class Tangent(Protocol):
+    """A tangent stiffness over all points."""
+
+    def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Nodal forces under displacements of all points, both (dim n_points,) or (dim n_points, k)."""
+        ...
+
+    def reduce(self, constraints: Constraints) -> Operator:
+        """The same on the free displacements, (n_free, n_free): its shape, diagonal, sums and products."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -57,78 +63,3 @@ class Term(Protocol):
     def evaluate(self, before: Motion, now: Motion) -> Share:
         """Force and tangent at ``now``, which follows the converged ``before``, whose history both carry."""
         ...
-
-
-class Bodies(Term, Protocol):
-    """A term that has stresses."""
-
-    def stress(self, motion: Motion) -> PointStress:
-        """At the integration points."""
-        ...
-
-
-@dataclass(frozen=True)
-class LinearBodies:
-    """Linear elastic bodies under small strains: force = K u; their thermal strains are loads. temperatures: change of
-    temperature of each body as a whole at a time."""
-
-    backend: Backend
-    loads: Loads
-    histories: Sequence[Amplitude]
-    temperatures: Callable[[float], Mapping[str, float]]
-    name: str = "bodies"
-    constant: bool = True
-
-    def evaluate(self, before: Motion, now: Motion) -> Share:
-        """As in ``Term``; the tangent is the backend."""
-        return Share(self.backend.internal(now.displacement), self.backend)
-
-    def stress(self, motion: Motion) -> PointStress:
-        """As in ``Bodies``."""
-        temperature = self.loads.temperature @ weights(self.histories, motion.time)
-        change = TemperatureChange(self.temperatures(motion.time), temperature)
-        return self.backend.stress(motion.displacement.reshape(len(temperature), -1), change)
-
-
-@dataclass(frozen=True)
-class SolidBodies:
-    """Bodies of any material, those of users' own among them, under small or finite strains, theory (D2). ``evaluate`` and
-    ``stress`` raise ``abut.bodies.inverted.Inverted`` at displacements that turn a cell inside out under finite ones."""
-
-    model: Model
-    loads: Loads
-    backend: Backend
-    name: str = "bodies"
-    constant: bool = False
-
-    def evaluate(self, before: Motion, now: Motion) -> Share:
-        """As in ``Term``."""
-        deformed = self.backend.deform(*self._at(now, before.history))
-        symmetric = is_symmetric(self.model.deformable)
-        energy = None if self.model.small_strains else deformed.energy
-        return Share(deformed.force, deformed.tangent, deformed.history, symmetric, energy)
-
-    def stress(self, motion: Motion) -> PointStress:
-        """As in ``Bodies``: Cauchy stresses under finite strains."""
-        return self.backend.stress(*self._at(motion, motion.history))
-
-    def _at(
-        self, motion: Motion, history: Mapping[str, Vector]
-    ) -> tuple[Vector, TemperatureChange, Mapping[str, Vector] | None]:
-        temperature = self.loads.temperature @ weights(self.model.histories, motion.time)
-        change = TemperatureChange(self.model.temperatures(motion.time), temperature)
-        return motion.displacement.reshape(len(temperature), -1), change, history or None
-
-
-@dataclass(frozen=True)
-class DeadLoads:
-    """Loads that keep their direction and place; histories: of the columns of ``loads``."""
-
-    loads: Loads
-    histories: Sequence[Amplitude]
-    name: str = "loads"
-    constant: bool = True
-
-    def evaluate(self, before: Motion, now: Motion) -> Share:
-        """As in ``Term``."""
-        return Share(-(self.loads.forces @ weights(self.histories, now.time)))

@@ -12,7 +12,7 @@ from abut.cells import MAX_FACET_NODES
 from abut.contact.coupling import CouplingOptions
 from abut.contact.moving_normals import MovingNormals, NormalPattern, normal_pattern
 from abut.mesh.surface import Surface
-from abut.problem.contact_pairs import Pair
+from abut.problem.pair import Pair
 from abut.problem.slip_points import SlipPoints
 from abut.types import Sparse
 

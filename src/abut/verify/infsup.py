@@ -20,7 +20,8 @@ from abut.linear import direct
 from abut.mesh.surface import Surface
 from abut.model import LAWS, Model
 from abut.problem.constraints import Constraints, supports
-from abut.problem.contact_pairs import Pair, pairs, with_plain_functions
+from abut.problem.contact_pairs import pairs, with_plain_functions
+from abut.problem.pair import Pair
 from abut.types import Sparse
 from abut.verify.norms import facet_scale, h1_matrix, trace_norm
 from abut.verify.trace import trace_space

@@ -27,8 +27,9 @@ from abut.mesh.surface import Surface
 from abut.model import Contact, Model, Solid
 from abut.model.conditions import support_along
 from abut.problem.constraints import supports
-from abut.problem.contact_pairs import Pair, pair
+from abut.problem.contact_pairs import pair
 from abut.problem.linearised import Rows
+from abut.problem.pair import Pair
 from abut.problem.rigid_modes import rigid_modes
 
 EXACT = 1e-8  # of pressure and displacement, relative: rounding times the condition of the user's meshes
