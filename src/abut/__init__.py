@@ -38,6 +38,7 @@ if TYPE_CHECKING:
         Rotation,
         Solid,
         SolveOptions,
+        Spring,
         Support,
         Temperature,
         Term,
@@ -67,8 +68,8 @@ __all__ = [
     "Equation", "Force", "FoundContact", "Gravity", "Hencky", "InputError", "Integration", "LinearElastic", "Mesh",
     "Model", "Moment", "MooneyRivlin", "NeoHooke", "NodalForce", "Ogden", "Output", "Plastic", "Preload", "Pressure",
     "PressureOverclosure", "Probe", "Rigid", "Rotation", "SingularModelError", "Solid", "Solution", "SolveOptions",
-    "Support", "Temperature", "Term", "Traction", "Yeoh", "add_surfaces", "check", "find_contacts", "plot", "solve",
-    "to_pyvista", "write", "write_report",
+    "Spring", "Support", "Temperature", "Term", "Traction", "Yeoh", "add_surfaces", "check", "find_contacts", "plot",
+    "solve", "to_pyvista", "write", "write_report",
 ]  # fmt: skip
 
 

@@ -10,7 +10,7 @@ import scipy.sparse as sp
 
 import abut
 from abut.errors import InputError, SingularModelError
-from abut.mesh.make import join, rectangle
+from abut.mesh.make import join, rectangle, ring
 from abut.problem.elimination import eliminate
 from models.constrained import EXACT, SOFT, at, equal
 
@@ -200,3 +200,30 @@ def test_bad_equations_are_refused() -> None:
         abut.Term(0, "w", 1.0)
     with pytest.raises(InputError, match="node set or a point"):
         abut.Term(0.5, "x", 1.0)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("kind", ["plane", "space"])
+def test_supports_in_cylindrical_axes(kind):
+    """A sector of a thick ring from 20 to 80 degrees, its ends held around the axis, its bore widened: Lame's
+    u = A r + B / r. Radial forces around the bore sum up to those of the pressure that does it."""
+    sector = ring((1.0, 2.0), (20.0, 80.0), cells=(6, 8))
+    young, poisson, widened = 1000.0, 0.3, 0.01
+    axes = abut.Axes("cylindrical")
+    model = abut.Model(
+        join({"ring": sector}),
+        [abut.Solid("ring", abut.LinearElastic(young, poisson))],
+        [
+            abut.Support("ring.start", y=0, axes=axes),
+            abut.Support("ring.end", y=0, axes=axes),
+            abut.Support("ring.inner", x=widened if kind == "plane" else "0.01", axes=axes),
+        ],
+        plane="strain",
+    )
+    solution = abut.solve(model)
+    radius = np.linalg.norm(model.mesh.points, axis=1)
+    outer = (1.0 - 2.0 * poisson) * radius + 4.0 / radius  # stress-free at r = 2
+    exact = widened * outer / ((1.0 - 2.0 * poisson) + 4.0)
+    moved = np.einsum("nij,nj->ni", axes.frames(model.mesh.points), solution.displacement)
+    assert moved[:, 0] == pytest.approx(exact, rel=2e-4)  # quadratic cells, six through the wall
+    assert np.abs(moved[:, 1]).max() < 1e-5 * widened
+    assert "ring.inner" in solution.steps[-1].reactions

@@ -44,6 +44,8 @@ def test_a_shortening_stretches_the_bar(cell, where):
     assert result.tension == pytest.approx(YOUNG * AREA * 0.02 / LENGTH, rel=EXACT)
     assert solution.steps[-1].reactions["bar.bottom"][2] == pytest.approx(-result.tension, rel=1e-8)
     assert np.abs(result.moment).max() < 1e-8
+    if cell.startswith("hex"):  # at the section too
+        assert solution.steps[-1].stress[:, 2] == pytest.approx(result.tension / AREA, rel=1e-6)
 
 
 @pytest.mark.parametrize("kinematics", ["small", "finite"])
@@ -92,6 +94,17 @@ def test_a_surface_between_cells_is_a_section_and_a_cut_mesh_stays_cut():
     assert len(again.mesh.points) == len(model.mesh.points)
     result = abut.solve(again).steps[-1].preloads["bolt"]
     assert result.tension == pytest.approx(YOUNG * AREA * 0.02 / LENGTH, rel=EXACT)
+
+
+@pytest.mark.parametrize("lock", [None, 0.5])
+def test_a_bolt_under_a_free_head_is_stretched_evenly(lock):
+    """What contact alone holds moves with the shortening: two facets across the bolt, another body under the head."""
+    model = replace(sleeve("small", cells=2), solve=abut.SolveOptions(steps=2))
+    model = replace(model, preloads=[replace(model.preloads[0], lock=lock)])
+    step = abut.solve(model).steps[-1]
+    top = step.displacement[model.mesh.nodes_of("bolt.top"), 1]
+    assert top == pytest.approx(-10000.0 * 50.0 / (210e3 * 400.0), rel=1e-6)
+    assert step.preloads["bolt"].shortening == pytest.approx(0.0297619048, rel=1e-6)
 
 
 def test_a_locked_bolt_goes_on_after_a_restart():

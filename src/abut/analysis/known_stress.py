@@ -164,6 +164,9 @@ def _add_supports(model: Model, skin: _Skin) -> None:
         for term in equation.terms:
             at = mesh.nodes_of(term.on) if isinstance(term.on, str) else np.array([int(term.on)])
             skin.unknown[skin.touching(_marked(model, at), False)] = True
+    for places, every in (([s for p in model.preloads for s in p.sides], True), ([s.on for s in model.springs], False)):
+        for on in places:  # what sections and springs exert is not known point by point
+            skin.unknown[skin.touching(_marked(model, mesh.nodes_of(on)), every)] = True
     normal = area_vectors(skin.surface)[:, 0]
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
     whole = np.stack([skin.touching(held[:, axis], True) for axis in range(dim)], axis=1)
@@ -180,8 +183,8 @@ def _add_supports(model: Model, skin: _Skin) -> None:
 
 
 def _axes(model: Model, support: Support) -> list[tuple[int, object]]:
-    """Components that a support holds, and the values; all where they lie along its surface's normals."""
-    if support.normal is not None:
+    """Components that a support holds, and the values; all where they lie along its surface's normals or local axes."""
+    if support.normal is not None or support.axes is not None:
         return [(axis, lambda x: x) for axis in range(model.dim)]
     given = [(axis, getattr(support, name)) for axis, name in enumerate(COMPONENTS[: model.dim])]
     return [(axis, value) for axis, value in given if value is not None]

@@ -42,6 +42,7 @@ from abut.problem.problem import CONTACTS, ContactProblem
 from abut.problem.rigid_bodies import RigidBody
 from abut.problem.scales import scales
 from abut.problem.sections import preload_forces
+from abut.problem.springs import Springs
 from abut.problem.stabilising import drag_of, is_dragged
 from abut.problem.step_error import LANDED, landed_in
 from abut.problem.terms import Motion
@@ -56,9 +57,9 @@ NO_STRAIN = 1e-12  # nodal forces over stiffness times displacement from which d
 class _End:
     """A model at the end of a load step. displacement, internal, loads, reaction: (dim n_points,) without rigid motions on
     springs, forces of stresses, of loads, of supports and links; following: those of loads that follow the deformation;
-    locked: of preloads that are locked; pressures: (n,) of each pair; cycling: (n,) multipliers that keep changing;
-    supports: of each pair int H_k over all of the deformed contactor, (n_functions,), where it may meet the target anywhere,
-    else None."""
+    locked, sprung: of preloads that are locked, of springs; pressures: (n,) of each pair; cycling: (n,) multipliers that
+    keep changing; supports: of each pair int H_k over all of the deformed contactor, (n_functions,), where it may meet the
+    target anywhere, else None."""
 
     problem: ContactProblem
     balance: Balance
@@ -71,6 +72,7 @@ class _End:
     reaction: NDArray[np.float64]
     following: NDArray[np.float64]
     locked: NDArray[np.float64]
+    sprung: NDArray[np.float64]
     cycling: NDArray[np.bool_]
     flow: Flow | None
     supports: Sequence[NDArray[np.float64] | None]
@@ -115,7 +117,7 @@ def step_result(
         iterations=attempt.iterations,
         displacement=end.nodal,
         stress=stress,
-        reaction=end.reaction.reshape(-1, model.dim).sum(axis=0),
+        reaction=(end.reaction + end.sprung).reshape(-1, model.dim).sum(axis=0),
         reactions={
             on: by_supports[_with_bodies(model.mesh.nodes_of(on), constraints.bodies)].sum(axis=0)
             for on in {s.on: s for s in model.supports}
@@ -141,6 +143,7 @@ def step_result(
         remembered=remembered(solids, end.motion.history),
         flow=end.flow,
         preloads=_preloads(end, linked),
+        springs=_springs(end),
     )
     return step, acting
 
@@ -172,11 +175,15 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
     locked = np.zeros_like(displacement)
     if LockedPreloads.name in balance.forces:
         locked -= balance.forces[LockedPreloads.name]
-    loads = assembled.loaded.forces @ balance.factors + following + locked
+    sprung = np.zeros_like(displacement)
+    for term in problem.terms:
+        if isinstance(term, Springs):
+            sprung -= term.evaluate(motion, motion).force
+    loads = assembled.loaded.forces @ balance.factors + following + locked + sprung
     reaction = internal - loads - contact_force
     return _End(
-        problem, balance, state, motion, displacement, pressures, internal, loads, reaction, following, locked, cycling,
-        flow(problem.model.deformable, motion.history), supports,
+        problem, balance, state, motion, displacement, pressures, internal, loads, reaction, following, locked, sprung,
+        cycling, flow(problem.model.deformable, motion.history), supports,
     )  # fmt: skip
 
 
@@ -258,6 +265,19 @@ def _rigid(end: _End, body: RigidBody, forces: NDArray[np.float64]) -> RigidResu
         return RigidResult(moved, turn, *body.resultant(forces, end.nodal))
     given = body.prescribed(histories)[1] @ weights(histories, end.state.time)
     return RigidResult(*body.motion(end.nodal, given), *body.resultant(forces))
+
+
+def _springs(end: _End) -> dict[str, NDArray[np.float64]]:
+    """Resultant of each spring on what it is on."""
+    model = end.problem.model
+    found = {}
+    for term in end.problem.terms:
+        if isinstance(term, Springs):
+            for spring in model.springs:
+                found[spring.name] = term.force_on(end.displacement)[spring.name][model.mesh.nodes_of(spring.on)].sum(
+                    axis=0
+                )
+    return found
 
 
 def _preloads(end: _End, linked: NDArray[np.float64]) -> dict[str, PreloadResult]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from abut.benchmarks.record import Benchmark, Reference
@@ -67,7 +69,58 @@ def _case(kinematics: str, what: str, title: str, apart: float, hotter: float, a
     )
 
 
+VDI = {"m12": (12.0, 42.0, 16.63, 13.5, 30.0, 7.5980e-7), "m16": (16.0, 60.0, 22.49, 17.5, 50.0, 4.9762e-7)}
+STEEL = 205e3
+
+
+def _vdi(size: str) -> Benchmark:
+    """Half of two plates under a rigid head, by the plane of symmetry between them."""
+    bolt, clamped, head, hole, outer, exact = VDI[size]
+    shank = clamped / (STEEL * np.pi * bolt**2 / 4.0)
+
+    def model(level: int) -> Model:
+        n = 2**level
+        radii: Any = [*np.linspace(hole / 2, head / 2, 4 * n + 1)[:-1], *np.geomspace(head / 2, outer / 2, 10 * n + 1)]
+        parts = {
+            "bolt": rectangle((0.0, bolt / 2), (0.0, clamped / 2), (2, 8), "quad8"),
+            "plate": rectangle((0.0, 1.0), (0.0, clamped / 2), (radii, 14 * n), "quad8"),
+            "head": rectangle((0.0, head / 2), (clamped / 2, clamped / 2 + 6.0), (4, 1)),
+        }
+        return Model(
+            join(parts),
+            [Solid("bolt", LinearElastic(STEEL, 0.0)), Solid("plate", LinearElastic(STEEL, 0.3))],
+            [Support("bolt.bottom", y=0), Support("plate.bottom", y=0)],
+            (),
+            [
+                Contact("bolt.top", "head.bottom", "bolt", kind="bilateral"),
+                Contact("plate.top", "head.bottom", "plate"),
+            ],
+            plane="axisymmetric",
+            rigid=[Rigid("head")],
+            preloads=[Preload("bolt", "bolt", force=FORCE)],
+        )
+
+    def measure(solution: Solution) -> dict[str, float]:
+        return {"compliance of the plates": 2.0 * solution.steps[-1].preloads["bolt"].shortening / FORCE - shank}
+
+    return Benchmark(
+        f"bolt-vdi-{size}",
+        f"compliance of plates that an {size.upper()} bolt clamps, by what its shortening is more than its own",
+        model,
+        measure,
+        {
+            "compliance of the plates": Reference(
+                exact,
+                0.08,
+                "VDI 2230, deformation cone",
+                "the cone stands for a field; the head is rigid and smooth here",
+            )
+        },
+    )
+
+
 BENCHMARKS = (
+    *(_vdi(size) for size in VDI),
     _case("small", "pulled", "pulled apart by 6000 N", 6000.0, 0.0, (11200.0, 5200.0)),
     _case("small", "opened", "pulled apart by 13 000 N, beyond the 12 500 N at which the sleeve lets go",
           13000.0, 0.0, (13000.0, 0.0)),

@@ -53,6 +53,7 @@ from abut.model import (
     Temperature,
     Term,
 )
+from abut.types import Json
 
 AXES = "xyz"
 SAME_WAY = (
@@ -307,7 +308,7 @@ def _supports(bound: Bonds, groups: Groups) -> list[Support]:
     for key, nodes in alike.items():
         on = groups.node_set(np.array(nodes), f"support-{len(result) + 1}")
         still = {AXES[axis]: 0.0 for axis, course in key if zero(course)}
-        moving: dict[Course | None, dict[str, float]] = {}
+        moving: dict[Course | None, Json] = {}
         for axis, course in key:
             if not zero(course):
                 size, unit = scaled(course)

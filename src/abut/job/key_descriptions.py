@@ -30,6 +30,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "rigid": "bodies that move as a whole",
         "couplings": "points that move with a reference point, which carries forces and moments",
         "preloads": "bolts that are tightened: sections of bodies whose sides are drawn together",
+        "springs": "springs to the ground, between points, and beds under surfaces",
         "rotations": "surfaces, node sets and bodies that turn about an axis; not with small kinematics",
         "probes": "points, lines and sets of nodes whose results are listed for every step",
         "solve": "load steps, linear solver, iterations",
@@ -138,6 +139,15 @@ MEANINGS: dict[str, dict[str, str]] = {
         "y": "displacement along y, a number or an expression; left out: free [length]",
         "z": "displacement along z (3D only), a number or an expression; left out: free [length]",
         "normal": "displacement along the surface's own outward normal, instead of x, y, z [length]",
+        "axes": "local axes, along whose first, second and third direction x, y and z then are, at each undeformed node",
+    },
+    "AxesTable": {
+        "kind": "rectangular: the same everywhere; cylindrical: radial, around the axis, along it; spherical: radial, east, "
+        "north; in 2D both are radial and around the origin",
+        "origin": "a point on the axis, or the centre; left out: the origin [length]",
+        "axis": "direction of the axis, in 3D; left out: z",
+        "x": "rectangular: first direction; left out: x",
+        "xy": "rectangular, 3D: a vector in the plane of the first two, on the side of the second; left out: y",
     },
     "PressureTable": {
         "kind": "pressure on a surface",
@@ -225,6 +235,18 @@ MEANINGS: dict[str, dict[str, str]] = {
         "ry": "rotation about y; left out: free [radian]",
         "rz": "rotation about z (in 2D the only one); left out: free [radian]",
         "amplitudes": "of single components, { y = [...], rz = [...] }: pairs of time and factor; others follow amplitude",
+    },
+    "SpringTable": {
+        "on": "name of the surface or node set",
+        "to": "node set at the other end, of as many nodes; left out: the ground",
+        "x": "stiffness along x of the whole, or pairs of displacement and force; linear between, and on beyond "
+        "[force/length]",
+        "y": "the same along y [force/length]",
+        "z": "the same along z [force/length]",
+        "normal": "the same along the outward normal of a surface: positive displacements press the bed [force/length]",
+        "along": "with to: the same along the line between both ends, of the lengthening [force/length]",
+        "per_area": "of a surface: all these per area (force/length^3, force/length^2)",
+        "weak": "only there to keep loose parts in place: the certificate judges its force",
     },
     "PreloadTable": {
         "name": "a name of your choice, used in messages and results",

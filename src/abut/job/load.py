@@ -44,6 +44,7 @@ from abut.model import (
     Rotation,
     Solid,
     SolveOptions,
+    Spring,
     Support,
     Temperature,
     Term,
@@ -161,6 +162,7 @@ def _model(file: JobFile, folder: Path, refine: int) -> tuple[Model, Resolved]:
         rotations=[Rotation(**values(r, f"rotations[{i}]")) for i, r in enumerate(file.rotations)],
         couplings=[Coupling(**values(c, f"couplings[{i}]")) for i, c in enumerate(file.couplings)],
         preloads=[Preload(**values(p, f"preloads[{i}]")) for i, p in enumerate(file.preloads)],
+        springs=[Spring(**values(s, f"springs[{i}]")) for i, s in enumerate(file.springs)],
         probes=[Probe(**values(probe, f"probes[{i}]")) for i, probe in enumerate(file.probes)],
     )
     return model, resolved

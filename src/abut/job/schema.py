@@ -13,6 +13,7 @@ from abut.fields import number_or_field
 from abut.job.key_descriptions import describe
 from abut.job.material_tables import Materials
 from abut.job.table import Number, OneOf, Table
+from abut.model.axes import KINDS as AXES
 from abut.model.contact import GEOMETRIES, KINDS, LAWS, METHODS, PRESSURES, RULES, Contact, Integration
 from abut.model.coupling import KINDS as COUPLINGS
 from abut.model.coupling import Coupling
@@ -87,6 +88,16 @@ class SolidTable(Table):
     integration: Annotated[str, OneOf(INTEGRATIONS)] = INTEGRATIONS[0]
 
 
+class AxesTable(Table):
+    """local axes at each point"""
+
+    kind: Annotated[str, OneOf(AXES)] = AXES[0]
+    origin: list[Number] | None = None
+    axis: list[Number] | None = None
+    x: list[Number] | None = None
+    xy: list[Number] | None = None
+
+
 class SupportTable(Table):
     on: str
     x: Varying = None
@@ -94,6 +105,7 @@ class SupportTable(Table):
     z: Varying = None
     normal: Number | None = None
     amplitude: Points | None = None
+    axes: AxesTable | None = None
 
 
 class TermTable(Table):
@@ -142,6 +154,34 @@ class CouplingTable(Table):
     rz: Number | None = None
     amplitude: Points | None = None
     amplitudes: dict[str, Points] = {}
+
+
+Law = Annotated[
+    Any,
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": "number", "exclusiveMinimum": 0},
+                {"type": "array", "minItems": 2, "items": {"type": "array", "items": {"type": "number"}}},
+            ]
+        }
+    ),
+]
+
+
+class SpringTable(Table):
+    """springs to the ground, between points, or under a surface"""
+
+    name: str
+    on: str
+    to: str = ""
+    x: Law = None
+    y: Law = None
+    z: Law = None
+    normal: Law = None
+    along: Law = None
+    per_area: bool = False
+    weak: bool = False
 
 
 class PreloadTable(Table):
@@ -322,6 +362,7 @@ class JobFile(Table):
     rotations: list[RotationTable] = []
     couplings: list[CouplingTable] = []
     preloads: list[PreloadTable] = []
+    springs: list[SpringTable] = []
     probes: list[ProbeTable] = []
     solve: SolveTable = SolveTable()
     output: OutputTable = OutputTable()

@@ -8,7 +8,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from abut.errors import InputError
-from abut.model import Amplitude
+from abut.model import Amplitude, Axes
 from abut.types import Json
 
 HISTORIES = ("amplitude", "friction_amplitude")
@@ -24,6 +24,11 @@ def values(table: BaseModel, where: str, leave_out: Collection[str] = ()) -> Jso
                 result[key] = Amplitude(result[key])
             except InputError as error:
                 raise InputError(f"{where}.{str(error).replace('amplitude', key, 1)}") from None
+    if result.get("axes") is not None:
+        try:
+            result["axes"] = Axes(**given["axes"])
+        except InputError as error:
+            raise InputError(f"{where}.{error}") from None
     if "amplitudes" in result:
         single: Json = given["amplitudes"]
         result["amplitudes"] = {

@@ -12,10 +12,11 @@ from abut.model.probe import Probe
 from abut.model.rotation import Rotation
 from abut.model.solid import Solid
 from abut.model.solve_options import SolveOptions
+from abut.model.spring import Spring
 
 __all__ = [
     "LAWS", "METHODS", "PLANES", "PRESSURES", "RULES", "Amplitude", "Axes", "BodyForce", "Centrifugal", "Contact",
     "Coupling", "Equation", "Force", "Gravity", "History", "Integration", "Load", "Model", "Moment", "NodalForce",
-    "Preload", "Pressure", "Probe", "Rigid", "Rotation", "Solid", "SolveOptions", "Support", "Temperature", "Term",
-    "Traction",
+    "Preload", "Pressure", "Probe", "Rigid", "Rotation", "Solid", "SolveOptions", "Spring", "Support", "Temperature",
+    "Term", "Traction",
 ]  # fmt: skip

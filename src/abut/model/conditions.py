@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from abut import checks
 from abut.errors import InputError
 from abut.fields import Field, number_or_field
+from abut.model.axes import Axes
 from abut.types import Json
 
 COMPONENTS = ("x", "y", "z")
@@ -117,6 +118,9 @@ class Support:
         Along the surface's own outward normal [length], in place of these.
     amplitude : Amplitude, optional
         Factor over time; the ramp where left out.
+    axes : Axes, optional
+        Local axes, whose first, second and third direction x, y and z then are (radial, around and along of cylindrical
+        ones), at each node where it was at the outset.
 
     Raises
     ------
@@ -128,6 +132,7 @@ class Support:
     >>> import abut
     >>> clamp = abut.Support("block.bottom", x=0, y=0)
     >>> bend = abut.Support("block.top", y=lambda points: -0.01 * points[:, 0] ** 2)  # x stays free
+    >>> bore = abut.Support("hub.bore", x=0, axes=abut.Axes("cylindrical"))  # no radial displacement
     """
 
     on: str
@@ -136,6 +141,7 @@ class Support:
     z: float | str | Field | None = None
     normal: float | None = None
     amplitude: History = None
+    axes: Axes | None = None
 
     def __post_init__(self) -> None:
         given = {name: getattr(self, name) for name in ("x", "y", "z", "normal") if getattr(self, name) is not None}
@@ -149,7 +155,14 @@ class Support:
             raise InputError(f"support on '{self.on}': no component is prescribed; give x, y, z or normal")
         if "normal" in given and len(given) > 1:
             raise InputError(f"support on '{self.on}': give either normal or components, not both")
+        if self.axes is not None and "normal" in given:
+            raise InputError(f"support on '{self.on}': axes go with x, y, z; normal has its own direction")
         check_amplitude(self.amplitude, f"support on '{self.on}'")
+
+    def directions(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Of x, y, z at points (n, dim), (n, dim, dim)."""
+        dim = points.shape[1]
+        return np.broadcast_to(np.eye(dim), (len(points), dim, dim)) if self.axes is None else self.axes.frames(points)
 
 
 def support_along(on: str, component: str, value: float) -> Support:

@@ -34,6 +34,10 @@ def check_supports(mesh: Mesh, supports: Sequence[Support]) -> None:
             checks.known(support.on, [*mesh.surfaces, *mesh.node_sets], f"supports[{i}].on", "surface or node set")
         else:
             checks.known(support.on, mesh.surfaces, f"supports[{i}].on", "surface (normal needs facets)")
+        if support.axes is not None:
+            support.axes.check(mesh.dim, f"supports[{i}]")
+            if mesh.axisymmetric and support.axes.kind != "rectangular":
+                raise InputError(f"supports[{i}].axes: the model is axisymmetric: x is radial already; leave axes out")
         if mesh.dim == 2 and support.z is not None:
             raise InputError(f"supports[{i}].z: the model is 2D; leave z out")
 

@@ -41,6 +41,7 @@ from abut.model.rotation import Rotation, check_rotations
 from abut.model.side_choice import SAME, decided, held_points, measured
 from abut.model.solid import Solid
 from abut.model.solve_options import SolveOptions
+from abut.model.spring import Spring, check_springs
 from abut.model.step_ends import with_corners
 from abut.model.symmetry import held_directions
 
@@ -87,6 +88,8 @@ class Model:
         Points that move with a reference.
     preloads : sequence of Preload
         Bolts that are tightened; the mesh is cut open at their sections.
+    springs : sequence of Spring
+        To the ground, between points, and beds under surfaces.
 
     Raises
     ------
@@ -126,6 +129,7 @@ class Model:
     rotations: Sequence[Rotation] = ()
     couplings: Sequence[Coupling] = ()
     preloads: Sequence[Preload] = ()
+    springs: Sequence[Spring] = ()
 
     def __post_init__(self) -> None:
         for name in (
@@ -139,6 +143,7 @@ class Model:
             "rotations",
             "couplings",
             "preloads",
+            "springs",
         ):
             object.__setattr__(self, name, checks.listed(getattr(self, name), name))
         check_entries(self.mesh)
@@ -151,6 +156,7 @@ class Model:
         check_supports(self.mesh, self.supports)
         check_loads(self.mesh, self.loads, {body.body for body in self.rigid}, {c.name for c in self.couplings})
         self._check_contacts()
+        check_springs(self.mesh, self.springs)
         check_kinematics(self.kinematics, self.solids)
         moving = moving_points(self.mesh, self.rigid, self.couplings)
         check_rotations(self.mesh, self.rotations, self.supports, moving, self.kinematics)

@@ -22,7 +22,7 @@ def held_directions(mesh: Mesh, supports: Sequence[Support]) -> Held | None:
             if value is not None and not callable(value) and value == 0.0:
                 at = mesh.nodes_of(support.on)
                 points.append(at)
-                directions.append(np.broadcast_to(np.eye(mesh.points.shape[1])[axis], (len(at), mesh.points.shape[1])))
+                directions.append(support.directions(mesh.points[at])[:, axis])
         if support.normal == 0.0 and support.on in mesh.surfaces:
             surface = mesh.surface(support.on)
             used = surface.nodes >= 0

@@ -1,4 +1,4 @@
-"""forces.csv: force over displacement of every support, coupling, rigid body and preload, step by step."""
+"""forces.csv: force over displacement of every support, coupling, rigid body, spring and preload, step by step."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ FILE = "forces.csv"
 
 
 def table(solution: Solution) -> str:
-    """A row for each step and each support, coupling, rigid body and preload: motion, and force (moment) that holds or moves
-    it.
+    """A row for each step and each support, coupling, rigid body, spring and preload: motion, and force (moment) that holds
+    or moves it.
 
     Of a support (surface, node set or body) the displacement is the mean of its nodes, and the force the sum of theirs; of
     couplings and rigid bodies both are those of the reference. Rotations and moments of supports are empty. Free components
@@ -43,6 +43,11 @@ def table(solution: Solution) -> str:
             result = step.rigid[own_name]
             parts = (result.displacement, result.force, result.rotation, result.moment)
             rows.writerow([*_step(step), kind, own_name, *np.concatenate(parts).tolist()])
+        for spring in solution.model.springs:
+            motion = step.displacement[solution.model.mesh.nodes_of(spring.on)].mean(axis=0)
+            rows.writerow(
+                [*_step(step), "spring", spring.name, *motion.tolist(), *step.springs[spring.name].tolist(), *empty]
+            )
         for section in sections(solution.model.mesh, solution.model.preloads):
             carried = step.preloads[section.preload.name]
             values = [*(carried.shortening * section.normal).tolist(), *carried.force.tolist(), *[""] * len(turns)]

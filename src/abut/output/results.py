@@ -242,6 +242,7 @@ def _step_summary(step: Step) -> Json:
             body: {name: value.tolist() for name, value in vars(result).items()} for body, result in step.rigid.items()
         },
         **({"preloads": {name: _preload(result) for name, result in step.preloads.items()}} if step.preloads else {}),
+        **({"springs": {name: force.tolist() for name, force in step.springs.items()}} if step.springs else {}),
         "probes": probes.summary(step),
         "cycling": {name: facets.tolist() for name, facets in step.cycling.items()},
         "unsettled": [

@@ -26,6 +26,7 @@ from abut.problem.pair import Pair
 from abut.problem.preloads import LockedPreloads
 from abut.problem.problem import ContactProblem, stacked, unit_of
 from abut.problem.restraint import require_balance, require_unmoved, restraint
+from abut.problem.springs import Springs
 from abut.problem.terms import Term
 from abut.solution import Observer, Phase
 
@@ -54,7 +55,9 @@ def assemble(
     clock: Clock,
 ) -> Assembled:
     """The problem of a model. Raises InputError and SingularModelError for one that cannot be solved."""
-    reduced = backend.reduce(constraints)
+    reduced, sprung = backend.reduce(constraints), Springs.of(model)
+    if sprung is not None and sprung.constant:
+        reduced = reduced + sprung.tangent(np.zeros(model.mesh.points.size)).reduce(constraints)
     clock.mark("assembly")
     observe(Phase("cutting and integrating the interface"))
     every = finite_pairs(model, constraints) if model.finite else pairs(model, constraints, backend.couple)
@@ -62,6 +65,8 @@ def assemble(
     clock.mark("interface")
     observe(Phase("checking for unconstrained rigid-body motions"))
     restrained = restraint(model.mesh, constraints, every)
+    if sprung is not None:
+        restrained = restrained.helped_by(sprung.resistance(restrained.rigid.modes))
     neutral = None if model.finite else neutral_motions(restrained.rigid, restrained.steady, every)
     springs = free_mode_springs(
         restrained.rigid, restrained.everything, constraints, reduced, loaded.at_ends(model), neutral
@@ -80,8 +85,8 @@ def assemble(
         bodies = LinearBodies(backend, loaded, model.histories, model.temperatures)
     else:
         bodies = SolidBodies(model, loaded, backend)
-    beside = _beside(model, constraints, loaded)
-    constant = bodies.constant and all(term.constant for term in beside)
+    beside = [*_beside(model, constraints, loaded), *([sprung] if sprung else [])]
+    constant = _is_constant(model, [bodies, *beside])
     problem = ContactProblem(
         model=model,
         terms=(bodies, *beside),
@@ -101,6 +106,12 @@ def assemble(
     note(f"{n_free} free displacements, {sum(map(len, every))} multipliers")
     clock.mark("set-up")
     return Assembled(problem, bodies, loaded)
+
+
+def _is_constant(model: Model, terms: Sequence[Term]) -> bool:
+    """Whether the stiffness is, and can be condensed: half a bolt that a force draws together, and contact alone holds,
+    moves freely otherwise."""
+    return all(term.constant for term in terms) and all(preload.force is None for preload in model.preloads)
 
 
 def _beside(model: Model, constraints: Constraints, loaded: Loads) -> list[Term]:

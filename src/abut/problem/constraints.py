@@ -379,8 +379,9 @@ def _directions(mesh: Mesh, support: Support, dim: int) -> list[tuple[Array, ...
     """Nodes (n,), unit vectors (n, dim) or (dim,), values (n,)."""
     if support.normal is None:
         where = mesh.nodes_of(support.on)
+        along = support.directions(mesh.points[where])
         return [
-            (where, np.eye(dim)[a], evaluate(value, mesh.points[where], f"support on '{support.on}': {name}"))
+            (where, along[:, a], evaluate(value, mesh.points[where], f"support on '{support.on}': {name}"))
             for a, name in enumerate("xyz"[:dim])
             if (value := getattr(support, name)) is not None
         ]

@@ -20,6 +20,7 @@ _GROUPS = (
     ("Rigid bodies", "rigid"),
     ("Couplings", "couplings"),
     ("Preloads", "preloads"),
+    ("Springs", "springs"),
     ("Equations", "equations"),
     ("Contacts", "contacts"),
 )

@@ -56,7 +56,13 @@ def _held(
     """Unit normal (3,) and points of a support that holds one direction at zero and no other."""
     nodes = model.mesh.nodes_of(support.on)
     given = [value for value in (support.x, support.y, support.z, support.normal) if value is not None]
-    if len(given) != 1 or not isinstance(given[0], (int, float)) or given[0] != 0.0 or not len(nodes):
+    if (
+        support.axes is not None
+        or len(given) != 1
+        or not isinstance(given[0], (int, float))
+        or given[0] != 0.0
+        or not len(nodes)
+    ):
         return
     for axis, value in enumerate((support.x, support.y, support.z)):
         if value is not None:

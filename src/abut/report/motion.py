@@ -27,6 +27,8 @@ Curve = tuple[str, str, Vector, Vector, Vector]  # title, label of the axis, tim
 
 def _supports(solution: Solution) -> Iterator[Curve]:
     for support in solution.model.supports:
+        if support.axes is not None:  # its forces have no one direction
+            continue
         for i, axis in enumerate("xyz"[: solution.model.dim]):
             value = getattr(support, axis)
             if not isinstance(value, (int, float)) or value == 0.0:

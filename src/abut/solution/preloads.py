@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +12,7 @@ from abut.solution.contacts import Check
 
 REACHED = 1e-6  # of the tension that is given, or of what a locked section has been shortened by
 LOOSE = 0.5  # nothing between 0 and 1
+WEAK = 1e-3  # of the forces that weak springs may carry
 
 
 @dataclass(frozen=True)
@@ -51,3 +52,13 @@ def preload_checks(results: Mapping[str, PreloadResult]) -> list[Check]:
         Check("", "loose bolts", float(bool(loose)), LOOSE,
               f"1 where the section of a preload carries compression, which a bolt does not{said}"),
     ]  # fmt: skip
+
+
+def weak_checks(forces: Sequence[NDArray[np.float64]], reference: float) -> list[Check]:
+    """Of springs that are there to keep loose parts in place; none without. reference: the size of the forces."""
+    if not forces:
+        return []
+    most = max(float(np.linalg.norm(force)) for force in forces)
+    return [
+        Check("", "weak springs", most / reference, WEAK, "largest force of weak springs over the size of the forces")
+    ]

@@ -21,7 +21,7 @@ from abut.solution.contacts import Check, ContactResult, worst
 from abut.solution.energy import Energy
 from abut.solution.flow import Flow
 from abut.solution.idle import idle_contacts
-from abut.solution.preloads import PreloadResult, preload_checks
+from abut.solution.preloads import PreloadResult, preload_checks, weak_checks
 from abut.solution.progress import Iteration
 from abut.solution.state import State
 from abut.solution.stress_error import StressError
@@ -124,6 +124,7 @@ class Step:
     )  # by materials, at points: (n_points, ...)
     flow: Flow | None = None  # None where no material yields
     preloads: Mapping[str, PreloadResult] = field(default_factory=dict)
+    springs: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)  # force (dim,) on what each is on
 
     def __repr__(self) -> str:
         """The main numbers, in some lines."""
@@ -315,6 +316,8 @@ class Solution:
                                    pressure=float(np.sqrt(step.stress_error.energy)), highest=True,
                                    notice=STRESS_NOTICED))  # fmt: skip
             model += preload_checks(step.preloads)
+            weak = [step.springs[spring.name] for spring in self.model.springs if spring.weak]
+            model += weak_checks(weak, step.reference_force)
             for check in (*model, *(c for contact in step.contacts for c in contact.checks)):
                 lines.setdefault((check.contact, check.name), []).append(check)
         checks = [worst(checks) for checks in lines.values()]

@@ -1,0 +1,153 @@
+"""Springs as a term of the balance of forces; theory (F16)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from abut._core import shape_functions
+from abut.cells import BY_CODE, CELLS
+from abut.errors import InputError
+from abut.mesh.quadrature import facet_rule
+from abut.mesh.surface import Surface
+from abut.model import Model
+from abut.model.spring import Spring, Table
+from abut.problem.backend import Serial
+from abut.problem.terms import Motion, Share, Tangent
+from abut.types import Array, Sparse
+
+ONE = 1e-12  # distance of both ends of a spring, over the model's size, that gives no direction
+
+
+@dataclass(frozen=True)
+class SpringRows:
+    """Springs of one law, side by side. rows: (n, dim n_points) displacements by those of the points; share: (n,) of the
+    law that each has; law: a stiffness or a table."""
+
+    spring: Spring
+    rows: Sparse
+    share: Array
+    law: float | Table
+
+    def forces(self, moved: Array) -> tuple[Array, Array]:
+        """Of all n springs, against displacements (n,), and their slopes."""
+        if isinstance(self.law, float):
+            return self.share * self.law * moved, self.share * self.law
+        u, f = np.array(self.law).T
+        slopes = np.diff(f) / np.diff(u)
+        piece = np.clip(np.searchsorted(u, moved, side="right") - 1, 0, len(slopes) - 1)
+        return self.share * (f[piece] + slopes[piece] * (moved - u[piece])), self.share * slopes[piece]
+
+
+@dataclass(frozen=True)
+class Springs:
+    """All springs of a model; ``constant`` where they are linear."""
+
+    model: Model
+    parts: Sequence[SpringRows]
+    constant: bool
+    name: str = "springs"
+
+    @classmethod
+    def of(cls, model: Model) -> Springs | None:
+        """None where there are none. Raises InputError for springs between points that coincide."""
+        if not model.springs:
+            return None
+        parts = [part for spring in model.springs for part in _parts(model, spring)]
+        return cls(model, parts, all(spring.linear for spring in model.springs))
+
+    def evaluate(self, before: Motion, now: Motion) -> Share:
+        """As in ``Term``."""
+        total = np.zeros(len(now.displacement))
+        for part in self.parts:
+            total += part.rows.T @ part.forces(part.rows @ now.displacement)[0]
+        return Share(total, self.tangent(now.displacement))
+
+    def tangent(self, displacement: Array) -> Tangent:
+        """At displacements (dim n_points,)."""
+        slope = sp.csr_matrix((len(displacement),) * 2)
+        for part in self.parts:
+            slope = slope + part.rows.T @ sp.diags(part.forces(part.rows @ displacement)[1]) @ part.rows
+        return Serial(self.model, slope.tocsr())
+
+    def resistance(self, motions: Array) -> Array:
+        """Gram matrix of motions (dim n_points, m) by what springs take of them, of the size of one."""
+        total = np.zeros((motions.shape[1],) * 2)
+        for part in self.parts:
+            moved = part.rows @ motions
+            share = np.abs(part.share) / np.abs(part.share).sum()
+            total += moved.T @ (share[:, None] * moved)
+        return total
+
+    def force_on(self, displacement: Array) -> dict[str, Array]:
+        """By spring the nodal forces (n_points, dim) on what it is on."""
+        found: dict[str, Array] = {}
+        for part in self.parts:
+            force, _ = part.forces(part.rows @ displacement)
+            nodal = -(part.rows.T @ force).reshape(-1, self.model.dim)
+            found[part.spring.name] = found.get(part.spring.name, np.zeros_like(nodal)) + nodal
+        return found
+
+
+def _parts(model: Model, spring: Spring) -> list[SpringRows]:
+    mesh, dim = model.mesh, model.dim
+    result = []
+    for key, law in spring.laws.items():
+        if spring.on in mesh.surfaces and not spring.to:
+            surface = mesh.surface(spring.on)
+            shapes, area, normals = _at_points(surface)
+            directions = normals if key == "normal" else np.broadcast_to(np.eye(dim)["xyz".index(key)], normals.shape)
+            share = area if spring.per_area else area / area.sum()
+        else:
+            nodes = mesh.nodes_of(spring.on)
+            shapes = _picks(nodes, len(mesh.points))
+            share = np.full(len(nodes), 1.0 / len(nodes))
+            directions = np.zeros((len(nodes), dim))
+            if spring.to:
+                others = mesh.nodes_of(spring.to)
+                shapes = _picks(others, len(mesh.points)) - shapes
+            directions = _line(model, spring) if key == "along" else directions + np.eye(dim)["xyz".index(key)]
+        rows = sum(sp.kron(sp.diags(directions[:, a]) @ shapes, np.eye(dim)[[a]], format="csr") for a in range(dim))
+        result.append(SpringRows(spring, rows.tocsr(), share, law))
+    return result
+
+
+def _picks(nodes: Array, count: int) -> Sparse:
+    return sp.csr_matrix((np.ones(len(nodes)), (np.arange(len(nodes)), nodes)), shape=(len(nodes), count))
+
+
+def _line(model: Model, spring: Spring) -> Array:
+    mesh = model.mesh
+    away = mesh.points[mesh.nodes_of(spring.to)] - mesh.points[mesh.nodes_of(spring.on)]
+    length = np.linalg.norm(away, axis=1)
+    if (length <= ONE * np.ptp(mesh.points, axis=0).max()).any():
+        raise InputError(f"spring '{spring.name}': along: both ends are at one point; give x, y or z")
+    return np.asarray(away / length[:, None])
+
+
+def _at_points(surface: Surface) -> tuple[Sparse, Array, Array]:
+    """At the n integration points of a surface: shape functions (n, n_points), areas (n,), unit normals (n, dim)."""
+    shapes, areas, normals = [], [], []
+    for code in np.unique(surface.kinds):
+        cell = CELLS[BY_CODE[code].name]
+        nodes = surface.nodes[surface.kinds == code, : cell.nodes]
+        xi, weights = facet_rule(cell.name)
+        values, derivatives = shape_functions(cell.code, np.ascontiguousarray(xi))
+        tangents = np.einsum("qna,fnd->fqad", derivatives, surface.points[nodes])
+        if surface.dim == 2:
+            normal = np.stack([tangents[..., 0, 1], -tangents[..., 0, 0]], axis=-1)
+        else:
+            normal = np.cross(tangents[..., 0, :], tangents[..., 1, :])
+        size = np.linalg.norm(normal, axis=2)
+        at = np.einsum("qn,fnd->fqd", values, surface.points[nodes])
+        n = size.size
+        column = np.repeat(nodes[:, None, :], len(xi), axis=1).reshape(n, -1)
+        value = np.broadcast_to(values, (len(nodes), *values.shape)).reshape(n, -1)
+        row = np.repeat(np.arange(n), cell.nodes)
+        shapes.append(sp.csr_matrix((value.ravel(), (row, column.ravel())), shape=(n, len(surface.points))))
+        areas.append((weights * size * surface.around(at)).ravel())
+        normals.append((normal / size[..., None]).reshape(n, -1))
+    return sp.vstack(shapes, format="csr"), np.concatenate(areas), np.concatenate(normals)

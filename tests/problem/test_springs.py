@@ -1,0 +1,112 @@
+"""Springs: beds, ties to the ground and between points, tables and weak ones, against bars and springs in closed form."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+import abut
+from abut.errors import InputError
+from abut.mesh.make import box, join
+
+YOUNG, LENGTH, AREA = 1000.0, 4.0, 2.0
+EXACT = 1e-8  # stresses are uniform, and springs integrated exactly
+
+
+def column(springs, force=-10.0, cell="hex20", **more):
+    """Upright on its springs, nu = 0, pressed from above."""
+    mesh = join({"column": box([0, 1], [0, 2], [0, LENGTH], cells=[2, 2, 2], cell=cell)})
+    return abut.Model(
+        mesh,
+        [abut.Solid("column", abut.LinearElastic(YOUNG, 0.0))],
+        [abut.Support("column.left", x=0), abut.Support("column.front", y=0)],
+        [abut.Force("column.top", (0.0, 0.0, force))],
+        springs=springs,
+        **more,
+    )
+
+
+def top(solution):
+    mesh = solution.model.mesh
+    return solution.displacement[mesh.nodes_of("column.top"), 2].mean()
+
+
+SPRINGS = {
+    "normal": abut.Spring("bed", "column.bottom", normal=50.0),
+    "per area": abut.Spring("bed", "column.bottom", normal=25.0, per_area=True),
+    "axis": abut.Spring("bed", "column.bottom", z=50.0),
+    "table": abut.Spring("bed", "column.bottom", normal=((-1.0, 0.0), (0.0, 0.0), (0.1, 5.0))),
+}
+
+
+@pytest.mark.parametrize("spring", SPRINGS.values(), ids=SPRINGS)
+@pytest.mark.parametrize("cell", ["hex8", "hex20", "tet10"])
+def test_a_column_on_its_bed(spring, cell):
+    solution = abut.solve(column([spring], cell=cell))
+    assert top(solution) == pytest.approx(-10.0 / 50.0 - 10.0 * LENGTH / (YOUNG * AREA), rel=EXACT)
+    step = solution.steps[-1]
+    assert step.springs["bed"] == pytest.approx([0.0, 0.0, 10.0], abs=1e-7)
+    assert step.reaction[2] == pytest.approx(10.0, rel=EXACT)
+    assert step.stress[:, 2] == pytest.approx(-10.0 / AREA, rel=1e-6)  # on the bed too
+    assert all(check.passed for check in solution.certificate)
+
+
+@pytest.mark.parametrize("kinematics", ["small", "finite"])
+def test_a_table_bends_and_goes_on(kinematics):
+    """Stiffness 100 up to 4, then 20: 10 = 4 + 20 (u - 0.04)."""
+    spring = abut.Spring("bed", "column.bottom", z=((-0.04, -4.0), (0.04, 4.0), (0.05, 4.2)), y=1.0)
+    soft = replace(spring, z=((-0.05, -4.2), (-0.04, -4.0), (0.04, 4.0), (0.05, 4.2)))
+    model = column([soft], kinematics=kinematics)
+    solution = abut.solve(model)
+    bottom = solution.displacement[model.mesh.nodes_of("column.bottom"), 2].mean()
+    assert bottom == pytest.approx(-0.34, rel=1e-6)
+    assert solution.steps[-1].springs["bed"][2] == pytest.approx(10.0, rel=1e-6)
+
+
+def test_two_bars_with_a_spring_between_their_ends():
+    """In a row along x: bar, spring along the line between two nodes, bar: u = F (2 L / E A + 1 / k)."""
+    bars = {"one": box([0, 4], [0, 1], [0, 1], cells=[2, 1, 1]), "two": box([6, 10], [0, 1], [0, 1], cells=[2, 1, 1])}
+    mesh = join(bars)
+    ends = {name: mesh.nodes_of(side) for name, side in (("left end", "one.right"), ("right end", "two.left"))}
+    mesh = replace(mesh, node_sets={**mesh.node_sets, **ends})
+    sides = [
+        abut.Support(f"{bar}.{side}", **{axis: 0}) for bar in bars for side, axis in (("front", "y"), ("bottom", "z"))
+    ]
+    model = abut.Model(
+        mesh,
+        [abut.Solid(bar, abut.LinearElastic(YOUNG, 0.0)) for bar in bars],
+        [abut.Support("one.left", x=0), *sides],
+        [abut.Force("two.right", (5.0, 0.0, 0.0))],
+        springs=[abut.Spring("link", "left end", to="right end", along=20.0)],
+    )
+    solution = abut.solve(model)
+    moved = solution.displacement[mesh.nodes_of("two.right"), 0]
+    assert moved == pytest.approx(5.0 * (8.0 / YOUNG + 1.0 / 20.0), rel=EXACT)
+    assert solution.steps[-1].springs["link"] == pytest.approx([5.0, 0.0, 0.0], abs=1e-7)
+
+
+def test_weak_springs_are_judged_by_what_they_carry():
+    """A column that nothing else holds along z, pulled by almost nothing, or by all."""
+    weak = abut.Spring("weak", "column.bottom", z=1e-3, weak=True)
+    loads = [abut.Traction("column.top", (0.0, 0.0, 100.0)), abut.Traction("column.bottom", (0.0, 0.0, -100.0))]
+    held = abut.solve(replace(column([weak]), loads=loads))
+    assert next(check for check in held.certificate if check.name == "weak springs").passed
+    pulled = abut.solve(replace(column([weak]), loads=[abut.Traction("column.top", (0.0, 0.0, 1e-3))]))
+    assert not next(check for check in pulled.certificate if check.name == "weak springs").passed
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"on": "column.bottom"}, "no stiffness"),
+        ({"on": "column.bottom", "z": -1.0}, "expected a number > 0|positive|> 0"),
+        ({"on": "column.bottom", "z": ((0, 0), (1, -1))}, "must not decrease"),
+        ({"on": "column.bottom", "along": 1.0}, "along goes with to"),
+        ({"on": "nothing", "z": 1.0}, "no surface or node set named 'nothing'"),
+        ({"on": "column.bottom", "to": "column.top", "z": 1.0}, "no node set named"),
+    ],
+)
+def test_refused(given, words):
+    with pytest.raises(InputError, match=words):
+        column([abut.Spring("spring", **given)])
