@@ -13,7 +13,7 @@ from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.one_step import Setting
 from abut.nonlinear.pace import Pace
 from abut.nonlinear.semismooth import BALANCED
-from abut.problem.finite import FiniteProblem
+from abut.problem.problem import ContactProblem
 from abut.problem.stabilising import drag_of, with_drag
 from abut.solution import Iteration
 from abut.solution.state import State
@@ -83,7 +83,7 @@ def stabilised(setting: Setting, before: State, time: float) -> Led:
     """The step from the converged state ``before`` to ``time`` in parts, each with a drag on the way since the one before:
     backward Euler steps of a motion without inertia."""
     problem, setting = setting.problem, replace(setting, limit=min(MOST, setting.limit))
-    size, most = scale(problem.linearise(before, before)), 0.0
+    size, most = scale(problem.again(before, before)), 0.0
     strength = Strength(AGAIN if drag_of(before).any() else FIRST)
     here, parts, spent = before, list[Attempt](), tuple[Iteration, ...]()
     part, why = None, "bodies do not come to rest"
@@ -120,7 +120,7 @@ def stabilised(setting: Setting, before: State, time: float) -> Led:
     return Led((replace(part, iterations=spent or part.iterations, converged=False, reason=why),), bool(parts))
 
 
-def is_gone(problem: FiniteProblem, before: State, here: State) -> bool:
+def is_gone(problem: ContactProblem, before: State, here: State) -> bool:
     """Whether something has moved beyond all that loads of a model may mean."""
     way = problem.displacement(here) - problem.displacement(before)
     return bool(np.abs(way).max() > GONE * np.ptp(problem.model.mesh.points, axis=0).max())

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from abut.problem.pair import Pair
 from abut.solution.state import State
 
-LANDED = "landed"  # whose history is the two forces of ``Landed`` of each contact, in the step that ended
 Array = NDArray[np.float64]
 
 
@@ -57,6 +56,6 @@ def landed(pair: Pair, end: PairEnd, factors: Array) -> Landed:
 
 def landed_in(state: State) -> Landed:
     """Of all contacts, in the step that a state ended."""
-    forces = [array.ravel() for array in state.history.of(LANDED).values()]
+    forces = [contact.landed for contact in state.history.contacts.values() if contact.landed is not None]
     unsure, limit = np.sum(forces, axis=0) if forces else (0.0, 0.0)
     return Landed(float(unsure), float(limit))
