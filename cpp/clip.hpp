@@ -76,14 +76,22 @@ inline bool convex(const Point2 *p, int n) {
   return true;
 }
 
+constexpr double ON_LINE = 1e-11; // of an edge's length: what is nearer to its line lies on it
+
 // Part of a convex polygon on the left of the line from a to b; the edge along it is `edge` of `side`
-// (Sutherland-Hodgman, with the origin of each edge kept).
+// (Sutherland-Hodgman, with the origin of each edge kept). An edge of the polygon on the line stays that edge: rounding
+// must not decide which of two curves with a common chord bounds the part.
 inline Polygon clip_line(const Polygon &polygon, Point2 a, Point2 b, int side, int edge) {
   const Point2 along = b - a;
+  const double least = ON_LINE * dot2(along, along);
+  auto side_of = [&](Point2 p) {
+    const double d = cross2(along, p - a);
+    return std::abs(d) <= least ? 0.0 : d;
+  };
   Polygon next;
   for (int i = 0; i < polygon.size; ++i) {
     const Vertex &p = polygon.v[i], &q = polygon.v[(i + 1) % polygon.size];
-    const double dp = cross2(along, p.p - a), dq = cross2(along, q.p - a);
+    const double dp = side_of(p.p), dq = side_of(q.p);
     if (dp >= 0)
       next.push(p);
     if ((dp > 0 && dq < 0) || (dp < 0 && dq > 0)) {

@@ -16,7 +16,7 @@ public:
 
   explicit FiniteStrain(const Cells &cells)
       : cells(cells), n(cells.n), gradient(cells.rule * n * dim), hoop(axisymmetric ? cells.rule * n : 0),
-        volume(cells.rule), points(cells.rule), response(n * STRAINS * dim), pushed(n * dim) {
+        volume(cells.rule), points(cells.rule), response(n * RESPONSE) {
     if (cells.mean_dilatation)
       centre_rule();
   }
@@ -80,15 +80,23 @@ public:
     points[q].f[2][2] = stretch;
   }
 
-  // Adds the forces (n, dim) of a stress at point q.
+  // Adds the forces (n, dim) of a stress at point q: products of the first stress of Piola and Kirchhoff with the
+  // gradients of shape functions.
   void add_force(std::size_t q, const double *stress, double *force) const {
     const double w = volume[q] * power(q);
-    double b[STRAINS][dim];
+    const auto &f = points[q].f;
+    double first[dim][dim] = {{0}};
+    for (int a = 0; a < dim; ++a)
+      for (int b = 0; b < dim; ++b)
+        for (int p = 0; p < dim; ++p)
+          first[a][b] += w * f[a][p] * stress[AT[p][b]];
     for (std::size_t i = 0; i < n; ++i) {
-      derivative(q, i, b);
-      for (int s = 0; s < STRAINS; ++s)
-        for (int a = 0; a < dim; ++a)
-          force[i * dim + a] += w * b[s][a] * stress[s];
+      const double *g = &gradient[(q * n + i) * dim];
+      for (int a = 0; a < dim; ++a)
+        for (int b = 0; b < dim; ++b)
+          force[i * dim + a] += first[a][b] * g[b];
+      if constexpr (axisymmetric)
+        force[i * dim] += w * f[2][2] * stress[2] * hoop[q * n + i];
     }
   }
 
@@ -98,32 +106,20 @@ public:
   // Adds the stiffness (n, n, dim, dim) at point q, theory (D6), (D8); half: for nodes i <= k only.
   void add_stiffness(std::size_t q, const Dense &tangent, const double *stress, bool half, double *block) {
     respond(q, tangent, stress);
-    const double w = volume[q] * power(q);
-    double sigma[3][3], b[STRAINS][dim];
-    tensor(stress, sigma);
-    for (std::size_t k = 0; k < n; ++k)
-      for (int a = 0; a < dim; ++a) {
-        double sum = 0;
-        for (int c = 0; c < dim; ++c)
-          sum += sigma[a][c] * gradient[(q * n + k) * dim + c];
-        pushed[k * dim + a] = w * sum;
-      }
     for (std::size_t i = 0; i < n; ++i) {
-      derivative(q, i, b);
       const double *g = &gradient[(q * n + i) * dim];
       for (std::size_t k = half ? i : 0; k < n; ++k) {
-        double *out = &block[(i * n + k) * dim * dim], scalar = 0;
-        const double *r = &response[k * STRAINS * dim];
-        for (int a = 0; a < dim; ++a)
-          scalar += g[a] * pushed[k * dim + a];
-        for (int s = 0; s < STRAINS; ++s)
-          for (int a = 0; a < dim; ++a)
-            for (int c = 0; c < dim; ++c)
-              out[a * dim + c] += b[s][a] * r[s * dim + c];
-        for (int a = 0; a < dim; ++a)
-          out[a * dim + a] += scalar;
+        double *out = &block[(i * n + k) * dim * dim];
+        const double *r = &response[k * RESPONSE];
+        for (int m = 0; m < dim * dim; ++m) {
+          double sum = out[m];
+          for (int b = 0; b < dim; ++b)
+            sum += g[b] * r[b * dim * dim + m];
+          out[m] = sum;
+        }
         if constexpr (axisymmetric)
-          out[0] += w * sigma[2][2] * hoop[q * n + i] * hoop[q * n + k];
+          for (int c = 0; c < dim; ++c)
+            out[c] += hoop[q * n + i] * r[dim * dim * dim + c];
       }
     }
   }
@@ -179,6 +175,9 @@ private:
     }
   };
 
+  static constexpr int AT[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}}; // components of a symmetric tensor
+  static constexpr int RESPONSE = dim * dim * dim + (axisymmetric ? dim : 0);
+
   static void tensor(const double *stress, double (&sigma)[3][3]) {
     for (int a = 0; a < 3; ++a) {
       sigma[a][a] = stress[a];
@@ -225,54 +224,110 @@ private:
       result[0] += at.inverse[2][2] * hoop;
   }
 
-  // b[s][a]: strain s at point q per displacement a of node i.
-  void derivative(std::size_t q, std::size_t i, double (&b)[STRAINS][dim]) const {
-    const double *g = &gradient[(q * n + i) * dim];
-    const auto &f = points[q].f;
-    for (int a = 0; a < dim; ++a) {
-      for (int s = 0; s < STRAINS; ++s)
-        b[s][a] = 0;
-      for (int s = 0; s < dim; ++s)
-        b[s][a] = f[a][s] * g[s];
-      b[3][a] = f[a][0] * g[1] + f[a][1] * g[0];
-      if constexpr (dim == 3)
-        b[4][a] = f[a][1] * g[2] + f[a][2] * g[1], b[5][a] = f[a][2] * g[0] + f[a][0] * g[2];
+  // By the gradients of displacements, times the point's weight: of the first stress of Piola and Kirchhoff, stress (a,
+  // b) by slope (c, d) at [d][b][a][c], and of its hoop component.
+  struct Moduli {
+    double plane[dim][dim][dim][dim], hoop[dim][dim], of_hoop[dim][dim], own; // hoop: [d][c], of_hoop: [b][a]
+  };
+
+  static void linearise(const Deformed &at, double w, const double *c, Moduli &result) {
+    double half[STRAINS][dim][dim] = {{{0}}}; // w times the second stress by the slope, [s][d][c]
+    for (int s = 0; s < STRAINS; ++s)
+      for (int d = 0; d < dim; ++d)
+        for (int a = 0; a < dim; ++a)
+          for (int p = 0; p < dim; ++p)
+            half[s][d][a] += w * c[s * STRAINS + AT[p][d]] * at.f[a][p];
+    for (int d = 0; d < dim; ++d)
+      for (int b = 0; b < dim; ++b)
+        for (int a = 0; a < dim; ++a)
+          for (int e = 0; e < dim; ++e) {
+            double sum = 0;
+            for (int p = 0; p < dim; ++p)
+              sum += at.f[a][p] * half[AT[p][b]][d][e];
+            result.plane[d][b][a][e] = sum;
+          }
+    if constexpr (axisymmetric) {
+      const double out = at.f[2][2];
+      for (int d = 0; d < dim; ++d)
+        for (int a = 0; a < dim; ++a) {
+          result.hoop[d][a] = out * half[2][d][a], result.of_hoop[d][a] = 0;
+          for (int p = 0; p < dim; ++p)
+            result.of_hoop[d][a] += w * out * at.f[a][p] * c[AT[p][d] * STRAINS + 2];
+        }
+      result.own = w * out * out * c[2 * STRAINS + 2];
     }
-    if constexpr (axisymmetric)
-      b[2][0] = f[2][2] * hoop[q * n + i];
   }
 
-  // response[k][s][c]: stress s at point q, times its weight, by displacement c of node k.
+  // response[k]: of the first stress at point q, times its weight, by displacements of node k: stress (a, b) by c at
+  // [b][a][c], then the hoop stress by c.
   void respond(std::size_t q, const Dense &tangent, const double *stress) {
     Deformed &at = points[q];
     const double w = volume[q] * power(q), square = at.scale * at.scale;
-    double b[STRAINS][dim], by_scale[STRAINS] = {0};
-    if (cells.mean_dilatation) {
-      double metric[STRAINS]; // of the right Cauchy-Green tensor
-      for (int s = 0; s < STRAINS; ++s)
-        metric[s] = s < 3 ? (s < SCALED) * (2 * at.strain[s] + 1) : 2 * at.strain[s];
-      for (int s = 0; s < STRAINS; ++s) {
-        for (int t = 0; t < STRAINS; ++t)
-          by_scale[s] += square * tangent.c[s * STRAINS + t] * metric[t];
-        by_scale[s] += (2 - SCALED) * stress[s];
-      }
-      at.invert();
-    }
+    Moduli moduli;
+    linearise(at, w * square, tangent.c, moduli);
+    for (int d = 0; d < dim; ++d) // what turns with the stress
+      for (int b = 0; b < dim; ++b)
+        for (int a = 0; a < dim; ++a)
+          moduli.plane[d][b][a][a] += w * stress[AT[b][d]];
+    if constexpr (axisymmetric)
+      moduli.own += w * stress[2];
     for (std::size_t k = 0; k < n; ++k) {
-      derivative(q, k, b);
-      double own[dim] = {0};
-      if (cells.mean_dilatation) {
-        push(at, &gradient[(q * n + k) * dim], axisymmetric ? hoop[q * n + k] : 0, own);
-        for (int c = 0; c < dim; ++c)
-          own[c] = (centre_pushed[k * dim + c] - own[c]) / SCALED;
+      const double *g = &gradient[(q * n + k) * dim];
+      double *r = &response[k * RESPONSE];
+      const double *m = &moduli.plane[0][0][0][0];
+      for (int j = 0; j < dim * dim * dim; ++j) {
+        double sum = 0;
+        for (int d = 0; d < dim; ++d)
+          sum += m[d * dim * dim * dim + j] * g[d];
+        r[j] = sum;
       }
-      for (int s = 0; s < STRAINS; ++s)
-        for (int c = 0; c < dim; ++c) {
-          double sum = 0;
-          for (int t = 0; t < STRAINS; ++t)
-            sum += tangent.c[s * STRAINS + t] * b[t][c];
-          response[(k * STRAINS + s) * dim + c] = w * (square * sum + by_scale[s] * own[c]);
-        }
+      if constexpr (axisymmetric)
+        add_hoop(moduli, g, hoop[q * n + k], r);
+    }
+    if (cells.mean_dilatation)
+      add_dilatation(q, tangent, stress);
+  }
+
+  static void add_hoop(const Moduli &moduli, const double *g, double hoop, double *r) {
+    for (int b = 0; b < dim; ++b)
+      for (int a = 0; a < dim; ++a)
+        r[(b * dim + a) * dim] += moduli.of_hoop[b][a] * hoop;
+    for (int c = 0; c < dim; ++c) {
+      double sum = c == 0 ? moduli.own * hoop : 0;
+      for (int d = 0; d < dim; ++d)
+        sum += moduli.hoop[d][c] * g[d];
+      r[dim * dim * dim + c] = sum;
+    }
+  }
+
+  // Adds to the response what changes with the factor of F-bar, theory (D8).
+  void add_dilatation(std::size_t q, const Dense &tangent, const double *stress) {
+    Deformed &at = points[q];
+    const double w = volume[q] * power(q), square = at.scale * at.scale;
+    double metric[STRAINS], by_scale[STRAINS], first[dim][dim] = {{0}}; // metric: the right Cauchy-Green tensor
+    for (int s = 0; s < STRAINS; ++s)
+      metric[s] = s < 3 ? (s < SCALED) * (2 * at.strain[s] + 1) : 2 * at.strain[s];
+    for (int s = 0; s < STRAINS; ++s) {
+      by_scale[s] = (2 - SCALED) * stress[s];
+      for (int t = 0; t < STRAINS; ++t)
+        by_scale[s] += square * tangent.c[s * STRAINS + t] * metric[t];
+    }
+    for (int b = 0; b < dim; ++b)
+      for (int a = 0; a < dim; ++a)
+        for (int p = 0; p < dim; ++p)
+          first[b][a] += w * at.f[a][p] * by_scale[AT[p][b]];
+    at.invert();
+    for (std::size_t k = 0; k < n; ++k) {
+      double own[dim], *r = &response[k * RESPONSE];
+      push(at, &gradient[(q * n + k) * dim], axisymmetric ? hoop[q * n + k] : 0, own);
+      for (int c = 0; c < dim; ++c)
+        own[c] = (centre_pushed[k * dim + c] - own[c]) / SCALED;
+      for (int m = 0; m < dim * dim; ++m)
+        for (int c = 0; c < dim; ++c)
+          r[m * dim + c] += (&first[0][0])[m] * own[c];
+      if constexpr (axisymmetric)
+        for (int c = 0; c < dim; ++c)
+          r[dim * dim * dim + c] += w * at.f[2][2] * by_scale[2] * own[c];
     }
   }
 
@@ -294,7 +349,7 @@ private:
   std::vector<double> gradient;     // (rule, n, dim) of the undeformed cell
   std::vector<double> hoop, volume; // (rule, n) shape function over radius; (rule) weight times size
   std::vector<Deformed> points;     // (rule)
-  std::vector<double> response, pushed;
+  std::vector<double> response;     // (n, RESPONSE)
   std::vector<double> centre_shapes, centre_derivatives, centre_gradient, centre_hoop, centre_pushed;
 };
 

@@ -219,9 +219,10 @@ private:
     const std::int64_t row = results.indptr[own[i]], length = results.indptr[own[i] + 1] - row;
     const std::int32_t *begin = results.indices + row, *end = begin + length;
     double *out = results.stiffness + row * dim * dim;
+    const bool symmetric = half();
     for (std::size_t k = 0; k < n; ++k) {
       const std::int64_t position = std::lower_bound(begin, end, own[k]) - begin;
-      const bool stored = !half() || i <= k;
+      const bool stored = !symmetric || i <= k;
       const double *in = &block[(stored ? i * n + k : k * n + i) * dim * dim];
       for (int a = 0; a < dim; ++a)
         for (int b = 0; b < dim; ++b)

@@ -33,9 +33,11 @@ public:
   // The logarithmic strain, shear doubled.
   void strain(double *result) const {
     std::fill_n(result, STRAINS, 0.0);
-    for (int a = 0; a < 3; ++a)
+    for (int a = 0; a < 3; ++a) {
+      const double own = std::log1p(2 * matrix[a][a]) / 2;
       for (int s = 0; s < STRAINS; ++s) // transposed rotation of stresses takes strains back
-        result[s] += of_stress[a][s] * std::log1p(2 * matrix[a][a]) / 2;
+        result[s] += of_strain[a][s] * doubled(s) * own;
+    }
   }
 
   // Takes another strain out of the plane, logarithmic.
@@ -48,49 +50,58 @@ public:
   // Turns stress and tangent (6, 6) in the space of logarithms into those of Piola, Kirchhoff, Green and Lagrange,
   // theory (Y9), (Y10).
   void back(double *stress, double *c) const {
-    double turned[STRAINS] = {0}, half[STRAINS][STRAINS] = {{0}};
+    double turned[STRAINS] = {0}, wide[STRAINS][STRAINS] = {{0}}, own[STRAINS][STRAINS] = {{0}};
     for (int s = 0; s < STRAINS; ++s)
-      for (int t = 0; t < STRAINS; ++t) {
-        turned[s] += of_stress[s][t] * stress[t];
-        for (int m = 0; m < STRAINS; ++m)
-          half[s][t] += of_stress[s][m] * c[m * STRAINS + t];
+      for (int m = 0; m < STRAINS; ++m) {
+        const double turn = of_strain[s][m] * doubled(m);
+        turned[s] += turn * stress[m];
+        for (int t = 0; t < STRAINS; ++t)
+          wide[s][t] += turn * c[m * STRAINS + t];
       }
+    double columns[STRAINS][STRAINS]; // rows in memory, lest the products below stride
+    for (int m = 0; m < STRAINS; ++m)
+      for (int t = 0; t < STRAINS; ++t)
+        columns[m][t] = of_strain[t][m] * doubled(m);
     for (int s = 0; s < STRAINS; ++s)
-      for (int t = 0; t < STRAINS; ++t) {
-        c[s * STRAINS + t] = 0;
-        for (int m = 0; m < STRAINS; ++m)
-          c[s * STRAINS + t] += half[s][m] * of_stress[t][m];
-      }
-    std::copy_n(turned, STRAINS, stress);
-    back_from_principal(stress, c);
+      for (int m = 0; m < STRAINS; ++m)
+        for (int t = 0; t < STRAINS; ++t)
+          own[s][t] += wide[s][m] * columns[m][t];
+    for (int s = 0; s < STRAINS; ++s) {
+      turned[s] /= doubled(s);
+      for (int t = 0; t < STRAINS; ++t)
+        own[s][t] *= first[s] / doubled(s) * first[t] / doubled(t);
+    }
+    add_bending(turned, own);
+    std::fill_n(&wide[0][0], STRAINS * STRAINS, 0.0);
+    for (int s = 0; s < STRAINS; ++s)
+      for (int m = 0; m < STRAINS; ++m)
+        for (int t = 0; t < STRAINS; ++t)
+          wide[s][t] += own[s][m] * of_strain[m][t];
+    write(turned, wide, stress, c);
   }
 
-  // The same of stress and tangent along the principal axes.
+  // The same of stress and tangent along the principal axes, of laws that are isotropic: no shear stress, shear apart.
   void back_from_principal(double *stress, double *c) const {
-    double turned[STRAINS], own[STRAINS][STRAINS];
-    std::copy_n(stress, STRAINS, turned);
-    for (int s = 0; s < STRAINS; ++s)
-      for (int t = 0; t < STRAINS; ++t)
-        own[s][t] = c[s * STRAINS + t] * first[s] * first[t];
-    add_bending(turned, own);
-    for (int s = 0; s < STRAINS; ++s)
-      turned[s] *= first[s];
     double wide[STRAINS][STRAINS] = {{0}};
-    for (int s = 0; s < STRAINS; ++s) {
-      stress[s] = 0;
-      for (int m = 0; m < STRAINS; ++m) {
-        stress[s] += of_strain[m][s] * turned[m];
+    const Second second(*this);
+    for (int s = 0; s < 3; ++s)
+      for (int m = 0; m < 3; ++m) {
+        double own = c[s * STRAINS + m] * first[s] * first[m];
+        if (s == m)
+          own += 2 * second.of[s][s][s] * stress[s];
         for (int t = 0; t < STRAINS; ++t)
-          wide[s][t] += of_strain[m][s] * own[m][t];
+          wide[s][t] += own * of_strain[m][t];
       }
+    for (int s = 3; s < STRAINS; ++s) {
+      const int i = I[s], k = J[s];
+      const double bending = (second.of[i][i][k] * stress[i] + second.of[i][k][k] * stress[k]) / 2;
+      const double own = c[s * STRAINS + s] * first[s] * first[s] + bending;
+      for (int t = 0; t < STRAINS; ++t)
+        wide[s][t] = own * of_strain[s][t];
     }
-    for (int s = 0; s < STRAINS; ++s)
-      for (int t = 0; t < STRAINS; ++t) {
-        double sum = 0;
-        for (int m = 0; m < STRAINS; ++m)
-          sum += wide[s][m] * of_strain[m][t];
-        c[s * STRAINS + t] = sum;
-      }
+    double turned[STRAINS];
+    std::copy_n(stress, STRAINS, turned);
+    write(turned, wide, stress, c);
   }
 
 private:
@@ -103,23 +114,21 @@ private:
     for (int sweep = 0; sweep < SWEEPS; ++sweep) {
       if (matrix[0][1] == 0 && matrix[1][2] == 0 && matrix[2][0] == 0)
         return;
-      for (int p = 0; p < 2; ++p)
-        for (int q = p + 1; q < 3; ++q)
-          rotate(p, q);
+      rotate<0, 1>(), rotate<0, 2>(), rotate<1, 2>();
     }
   }
 
-  void rotate(int p, int q) {
+  template <int p, int q> void rotate() {
     const double off = matrix[p][q];
     const double tiny = 1e-17 * (std::abs(matrix[p][p]) + std::abs(matrix[q][q]));
     if (std::abs(off) <= tiny) {
       matrix[p][q] = matrix[q][p] = 0;
       return;
     }
-    const double theta = (matrix[q][q] - matrix[p][p]) / (2 * off);
-    const double t = (theta >= 0 ? 1 : -1) / (std::abs(theta) + std::sqrt(1 + theta * theta));
+    const double apart = matrix[q][q] - matrix[p][p];
+    const double t = (apart >= 0 ? 2 : -2) * off / (std::abs(apart) + std::sqrt(apart * apart + 4 * off * off));
     const double cosine = 1 / std::sqrt(1 + t * t), sine = t * cosine;
-    const int r = 3 - p - q;
+    constexpr int r = 3 - p - q;
     const double rp = matrix[r][p], rq = matrix[r][q];
     matrix[p][p] -= t * off, matrix[q][q] += t * off;
     matrix[p][q] = matrix[q][p] = 0;
@@ -131,18 +140,23 @@ private:
     }
   }
 
-  // To the principal axes, of stresses and of strains with doubled shear.
+  static constexpr double doubled(int s) { return s < 3 ? 1 : 2; }
+
+  // To the principal axes, of strains with doubled shear. That of stresses doubles its columns of shear and halves its
+  // rows of shear.
   void rotations() {
-    for (int s = 0; s < STRAINS; ++s)
-      for (int t = 0; t < STRAINS; ++t) {
-        const int a = I[s], b = J[s], i = I[t], j = J[t];
-        const double one = axes[i][a] * axes[j][b], other = axes[j][a] * axes[i][b];
-        of_stress[s][t] = t < 3 ? one : one + other;
-        of_strain[s][t] = (s < 3 ? 1 : 2) * (t < 3 ? one : (one + other) / 2);
+    for (int s = 0; s < STRAINS; ++s) {
+      const int a = I[s], b = J[s];
+      double *const row = of_strain[s];
+      for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3;
+        row[i] = doubled(s) * axes[i][a] * axes[i][b];
+        row[3 + i] = doubled(s) / 2 * (axes[i][a] * axes[j][b] + axes[j][a] * axes[i][b]);
       }
+    }
   }
 
-  // First and second divided differences of ln(1 + 2 g) / 2 over the eigenvalues g.
+  // First divided differences of ln(1 + 2 g) / 2 over the eigenvalues g.
   void set() {
     for (int a = 0; a < 3; ++a)
       square[a] = 1 + 2 * matrix[a][a];
@@ -153,53 +167,75 @@ private:
     }
   }
 
-  double second(int a, int b, int c) const {
-    double x[3] = {square[a], square[b], square[c]};
-    const double mean = (x[0] + x[1] + x[2]) / 3;
-    const double d[3] = {x[0] / mean - 1, x[1] / mean - 1, x[2] / mean - 1};
-    const double far = std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
-    if (far < 0.1) { // the series of ln about the mean: no differences of near numbers
-      const double two = d[0] * d[1] + d[1] * d[2] + d[2] * d[0], three = d[0] * d[1] * d[2];
-      double sums[3] = {1, 0, -two}, result = -0.5; // complete symmetric polynomials, the sum of d being zero
-      double sign = 1;
-      for (int n = 3; n < 26; ++n, sign = -sign) {
-        const double h = n - 2 < 3 ? sums[n - 2] : -two * sums[1] + three * sums[0];
-        if (n - 2 >= 3)
-          sums[0] = sums[1], sums[1] = sums[2], sums[2] = h;
-        result += sign * h / n;
-      }
-      return 2 * result / (mean * mean);
+  // Twice the second divided differences, by three eigenvalues.
+  struct Second {
+    double of[3][3][3];
+
+    explicit Second(const Logarithm &log) {
+      for (int i = 0; i < 3; ++i)
+        for (int j = i; j < 3; ++j)
+          for (int k = j; k < 3; ++k) {
+            const double value = i == k ? -1 / (log.square[i] * log.square[i]) : log.second(i, j, k);
+            of[i][j][k] = of[i][k][j] = of[j][i][k] = of[j][k][i] = of[k][i][j] = of[k][j][i] = value;
+          }
     }
-    std::sort(x, x + 3);
-    const auto slope = [](double p, double q) { return p == q ? 1 / p : std::log1p((q - p) / p) / (q - p); };
-    return 2 * (slope(x[1], x[2]) - slope(x[0], x[1])) / (x[2] - x[0]);
+  };
+
+  double second(int a, int b, int c) const {
+    const double mean = (square[a] + square[b] + square[c]) / 3;
+    const double d[3] = {square[a] / mean - 1, square[b] / mean - 1, square[c] / mean - 1};
+    const double far = std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
+    if (far < NEAR) { // the series of ln about the mean: no differences of near numbers
+      const double two = d[0] * d[1] + d[1] * d[2] + d[2] * d[0], three = d[0] * d[1] * d[2];
+      return 2 * (-0.5 + two / 4 + three / 5 - two * two / 6) / (mean * mean);
+    }
+    const double ab = std::abs(square[a] - square[b]), bc = std::abs(square[b] - square[c]);
+    const double ca = std::abs(square[c] - square[a]);
+    if (ca < ab || ca < bc) // the outer two the farthest apart
+      return ab < bc ? second(b, a, c) : second(a, c, b);
+    return 2 * (difference(b, c) - difference(a, b)) / (square[c] - square[a]);
   }
+
+  double difference(int a, int b) const { return first[AT[a][b]]; }
 
   // Adds what the stress contributes as the axes turn and the first differences change, in principal axes.
   void add_bending(const double *stress, double (&c)[STRAINS][STRAINS]) const {
-    double f[3][3][3];
+    const Second second(*this);
+    const auto &f = second.of;
+    double sigma[3][3];
     for (int i = 0; i < 3; ++i)
-      for (int j = i; j < 3; ++j)
-        for (int k = j; k < 3; ++k) {
-          const double value = second(i, j, k);
-          f[i][j][k] = f[i][k][j] = f[j][i][k] = f[j][k][i] = f[k][i][j] = f[k][j][i] = value;
-        }
+      for (int k = 0; k < 3; ++k)
+        sigma[i][k] = stress[AT[i][k]];
     for (int t = 0; t < STRAINS; ++t) {
-      double unit[3][3] = {{0}};
-      unit[I[t]][J[t]] = unit[J[t]][I[t]] = t < 3 ? 1 : 0.5;
-      for (int s = 0; s < STRAINS; ++s) {
-        const int i = I[s], k = J[s];
-        double sum = 0;
-        for (int j = 0; j < 3; ++j)
-          sum += f[i][j][k] * (stress[AT[i][j]] * unit[j][k] + unit[i][j] * stress[AT[j][k]]);
-        c[s][t] += sum;
+      const int p = I[t], q = J[t];
+      double change[3][3] = {{0}}; // of shear strain both ways: half of the doubled one
+      for (int i = 0; i < 3; ++i) {
+        change[i][q] += f[i][p][q] * sigma[i][p] / 2, change[i][p] += f[i][q][p] * sigma[i][q] / 2;
+        change[p][i] += f[p][q][i] * sigma[q][i] / 2, change[q][i] += f[q][p][i] * sigma[p][i] / 2;
       }
+      for (int s = 0; s < STRAINS; ++s)
+        c[s][t] += change[I[s]][J[s]];
     }
   }
 
+  // Stress and tangent from those along the principal axes; wide: of the latter, by strain.
+  void write(const double *turned, const double (&wide)[STRAINS][STRAINS], double *stress, double *c) const {
+    double result[STRAINS] = {0}, tangent[STRAINS][STRAINS] = {{0}};
+    for (int m = 0; m < STRAINS; ++m)
+      for (int s = 0; s < STRAINS; ++s) {
+        result[s] += of_strain[m][s] * first[m] * turned[m];
+        for (int t = 0; t < STRAINS; ++t)
+          tangent[s][t] += of_strain[m][s] * wide[m][t];
+      }
+    std::copy_n(result, STRAINS, stress);
+    std::copy_n(&tangent[0][0], STRAINS * STRAINS, c);
+  }
+
+  static constexpr double NEAR = 1e-3; // from here on differences keep twelve digits, the series below all
+
   double matrix[3][3], axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}; // axes in columns
   double square[3], first[STRAINS];
-  double of_stress[STRAINS][STRAINS], of_strain[STRAINS][STRAINS];
+  double of_strain[STRAINS][STRAINS];
 };
 
 } // namespace abut

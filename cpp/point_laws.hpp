@@ -18,6 +18,7 @@ inline double contracted(const double *a, const double *b) {
 // Isotropic linear elasticity by bulk and shear modulus.
 struct Hooke {
   static constexpr std::size_t history = 0;
+  static constexpr bool principal = true; // logarithmic strains along their principal axes will do
   double bulk, shear;
 
   static constexpr bool symmetric() { return true; }

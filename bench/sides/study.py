@@ -1,8 +1,9 @@
 """Which side should be the contactor: local errors of the pressure with either side, and with the one that abut chooses.
 
-python bench/sides/study.py [PART ...] [--chosen] [--markdown] [--rows]
+python bench/sides/study.py [PART ...] [--cells CELL ...] [--chosen] [--markdown] [--rows]
 Parts: those of ``PARTS`` with closed forms, and "edge" and "snap" (large sliding); all of them by default. A part takes a
-minute or two, those of solids of second order ten: --chosen solves each model once, with abut's choice.
+minute or two, those of solids of second order and the finest ten a cell type, which --cells picks by that of the side named
+first: --chosen solves each model once, with abut's choice.
 The exit status is 1 where abut's choice misses a limit, or where the wrong side is off by more than that and no
 line that says "swap" fails.
 """
@@ -11,7 +12,7 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from moving import MOVING
@@ -38,9 +39,11 @@ class Part:
     at: tuple[tuple[float, tuple[int, int]], ...]
     limit: dict[str, float]
 
-    def cases(self) -> Iterator[Case]:
-        """All models of the part."""
+    def cases(self, only: Sequence[str] = ()) -> Iterator[Case]:
+        """All models of the part; ``only`` those whose first side has such cells."""
         for pair in self.cells:
+            if only and pair[0] not in only:
+                continue
             for ratio, sizes in self.at:
                 yield KINDS[self.kind](pair, ratio, sizes)
 
@@ -122,9 +125,9 @@ def run(case: Case, limit: float, both: bool) -> Row:
     return Row(case, (errors[0], errors[1]), chosen, contact.chosen, said, limit)
 
 
-def rows_of(part: Part, both: bool) -> Iterator[Row]:
-    """Solve a part's models."""
-    for case in part.cases():
+def rows_of(part: Part, both: bool, only: Sequence[str] = ()) -> Iterator[Row]:
+    """Solve a part's models, ``only`` of some cells."""
+    for case in part.cases(only):
         limit = max(part.limit[key] for cell in case.cells for key in part.limit if cell.startswith(key))
         yield run(case, limit, both)
 
@@ -180,6 +183,7 @@ def main() -> int:
     """Run the study, part by part."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("parts", nargs="*", choices=[*PARTS, *MOVING, []], metavar="PART")
+    parser.add_argument("--cells", nargs="+", default=(), help="only models whose first side has such cells")
     parser.add_argument("--chosen", action="store_true", help="solve with abut's choice only")
     parser.add_argument(
         "--rows", action="store_true", help="show every model: cells, ratio, facets, errors of both sides"
@@ -192,7 +196,7 @@ def main() -> int:
             show(*MOVING[name](), arguments.markdown)
             continue
         rows = []
-        for row in rows_of(PARTS[name], not arguments.chosen):
+        for row in rows_of(PARTS[name], not arguments.chosen, arguments.cells):
             rows.append(row)
             if arguments.rows:
                 print("  ".join(line_of(row)), flush=True)

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from abut.mesh.mesh import Mesh
     from abut.model import (
         Amplitude,
+        Axes,
         BodyForce,
         Centrifugal,
         Contact,
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
         Model,
         Moment,
         NodalForce,
+        Preload,
         Pressure,
         Probe,
         Rigid,
@@ -61,9 +63,9 @@ _HOME = {  # of public names that do not come from abut.model
 }  # fmt: skip
 
 __all__ = [
-    "AbutError", "Amplitude", "ArrudaBoyce", "BodyForce", "Centrifugal", "Contact", "ConvergenceError", "Coupling",
+    "AbutError", "Amplitude", "ArrudaBoyce", "Axes", "BodyForce", "Centrifugal", "Contact", "ConvergenceError", "Coupling",
     "Equation", "Force", "FoundContact", "Gravity", "Hencky", "InputError", "Integration", "LinearElastic", "Mesh",
-    "Model", "Moment", "MooneyRivlin", "NeoHooke", "NodalForce", "Ogden", "Output", "Plastic", "Pressure",
+    "Model", "Moment", "MooneyRivlin", "NeoHooke", "NodalForce", "Ogden", "Output", "Plastic", "Preload", "Pressure",
     "PressureOverclosure", "Probe", "Rigid", "Rotation", "SingularModelError", "Solid", "Solution", "SolveOptions",
     "Support", "Temperature", "Term", "Traction", "Yeoh", "add_surfaces", "check", "find_contacts", "plot", "solve",
     "to_pyvista", "write", "write_report",

@@ -146,3 +146,19 @@ TEST(both_edges_at_the_apex_may_bulge) {
   const auto moment = [](Point2 p) { return p.x * p.y; };
   same(integral(polygon, curve_of, true, moment), integral(polygon, curve_of, false, moment), ROUNDING, "int x y");
 }
+
+// Rounding must not decide which of two edges with a common chord, whose curves differ, bounds the part.
+TEST(common_chords_stay_the_subject_s) {
+  const auto subject = square(0, 0);
+  for (double off : {-3e-15, 0.0, 3e-15})
+    for (double tilt : {-3e-15, 0.0, 3e-15}) {
+      const std::vector<Point2> clip{{0, off + tilt}, {1, off - tilt}, {1, 0.5}, {0, 0.5}};
+      const Polygon part = clip_convex(polygon_of(subject), clip.data(), 4, CLIP);
+      holds(part.size == 4, "a rectangle");
+      holds(part.v[0].side == SUBJECT && part.v[0].edge == 0, "the lower edge is the subject's own");
+      int of_clip = 0;
+      for (int i = 0; i < part.size; ++i)
+        of_clip += part.v[i].side == CLIP;
+      holds(of_clip == 1, "the clip cuts once");
+    }
+}

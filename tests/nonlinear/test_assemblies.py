@@ -25,10 +25,7 @@ pytest.importorskip("quadprog")
 SMALL = 60, 2000  # multipliers and displacements up to which dense matrices and quadprog take no time
 SAME = 1e-7  # of the largest pressure
 NONE = 1e-12  # of Young's modulus: pressures where nothing presses, by rounding of the gaps
-UNITS_ROUND = (
-    5e-3  # of bodies in space: how facets with a common edge are cut also counts in normals between both sides
-)
-UNITS_SAME = 1e-5  # rounding, which long beams enlarge, and which decides how curved facets with a common edge are cut
+UNITS_SAME = 1e-5  # rounding, which long beams enlarge
 DRAWS, SOLID_DRAWS = 35, 8
 
 
@@ -63,9 +60,7 @@ def pressures(solution: abut.Solution) -> NDArray[np.float64]:
     return np.concatenate([np.nan_to_num(contact.pressure).ravel() for contact in solution.contacts])
 
 
-def check(
-    build: Callable[[np.random.Generator], abut.Model], seed: int, units: tuple[str, ...], same: float = UNITS_SAME
-) -> None:
+def check(build: Callable[[np.random.Generator], abut.Model], seed: int, units: tuple[str, ...]) -> None:
     model = build(np.random.default_rng(seed))
     here = solved(model)
     others = {name: solved(in_units(model, MILLIMETRES_TO[name])) for name in units}
@@ -80,14 +75,12 @@ def check(
         assert other is not None, name
         unit = MILLIMETRES_TO[name].force / MILLIMETRES_TO[name].length ** 2
         off = np.abs(pressures(other[0]) / unit - expected).max()
-        assert off <= same * np.abs(expected).max() + nothing(model), name
+        assert off <= UNITS_SAME * np.abs(expected).max() + nothing(model), name
 
 
-def drawn(
-    kinds: Mapping[str, Callable[[np.random.Generator], abut.Model]], seed: int, same: float = UNITS_SAME
-) -> None:
+def drawn(kinds: Mapping[str, Callable[[np.random.Generator], abut.Model]], seed: int) -> None:
     """The kinds in turn, and one of the units."""
-    check(list(kinds.values())[seed % len(kinds)], seed, tuple(MILLIMETRES_TO)[seed % 3 : seed % 3 + 1], same)
+    check(list(kinds.values())[seed % len(kinds)], seed, tuple(MILLIMETRES_TO)[seed % 3 : seed % 3 + 1])
 
 
 @pytest.mark.parametrize("seed", range(DRAWS))
@@ -97,7 +90,7 @@ def test_plane_assemblies(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(SOLID_DRAWS))
 def test_solid_assemblies(seed: int) -> None:
-    drawn(SOLID, seed, UNITS_ROUND)
+    drawn(SOLID, seed)
 
 
 @pytest.mark.exhaustive
@@ -109,7 +102,14 @@ def test_every_plane_assembly(seed: int) -> None:
 @pytest.mark.exhaustive
 @pytest.mark.parametrize("seed", range(16))
 def test_every_solid_assembly(seed: int) -> None:
-    check(list(SOLID.values())[seed % len(SOLID)], seed, tuple(MILLIMETRES_TO), UNITS_ROUND)
+    check(list(SOLID.values())[seed % len(SOLID)], seed, tuple(MILLIMETRES_TO))
+
+
+@pytest.mark.parametrize("seed", [10, 78])
+def test_facets_with_a_common_edge_in_micrometres(seed: int) -> None:
+    """Balls whose curved edges have the chords of edges of the other side: rounding decided which of both bounds what is
+    cut, .2 to .4 % of the pressure."""
+    check(list(SOLID.values())[seed % len(SOLID)], seed, ("um",))
 
 
 @pytest.mark.parametrize(("kinds", "seed", "units"), [(PLANE, 126, "m"), (PLANE, 147, "m"), (SOLID, 28, "m")])

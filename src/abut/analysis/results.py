@@ -18,6 +18,7 @@ from abut.analysis.flow import flow, remembered
 from abut.analysis.known_stress import known_stress
 from abut.analysis.moved import largest_turn, slid
 from abut.analysis.overlap import covered_elsewhere, overlaps
+from abut.analysis.preloads import preload_results
 from abut.analysis.stress_error import stress_error
 from abut.analysis.surface_stress import normal_stress
 from abut.bodies.averages import averages
@@ -35,13 +36,15 @@ from abut.problem.balance import Balance
 from abut.problem.constraints import Constraints
 from abut.problem.follower_loads import FollowerLoads
 from abut.problem.pair import Pair
+from abut.problem.preloads import LockedPreloads
 from abut.problem.problem import ContactProblem
 from abut.problem.rigid_bodies import RigidBody
 from abut.problem.scales import scales
+from abut.problem.sections import preload_forces
 from abut.problem.stabilising import drag_of, is_dragged
 from abut.problem.step_error import landed_in
 from abut.problem.terms import Motion
-from abut.solution import ContactResult, Energy, Flips, Flow, RigidResult, Step
+from abut.solution import ContactResult, Energy, Flips, Flow, PreloadResult, RigidResult, Step
 from abut.solution.state import State
 
 Acted = Acting | FiniteActing | None  # what acts at the end of a step
@@ -52,8 +55,9 @@ NO_STRAIN = 1e-12  # nodal forces over stiffness times displacement from which d
 class _End:
     """A model at the end of a load step. displacement, internal, loads, reaction: (dim n_points,) without rigid motions on
     springs, forces of stresses, of loads, of supports and links; following: those of loads that follow the deformation;
-    pressures: (n,) of each pair; cycling: (n,) multipliers that keep changing; supports: of each pair int H_k over all of
-    the deformed contactor, (n_functions,), where it may meet the target anywhere, else None."""
+    locked: of preloads that are locked; pressures: (n,) of each pair; cycling: (n,) multipliers that keep changing;
+    supports: of each pair int H_k over all of the deformed contactor, (n_functions,), where it may meet the target anywhere,
+    else None."""
 
     problem: ContactProblem
     balance: Balance
@@ -65,6 +69,7 @@ class _End:
     loads: NDArray[np.float64]
     reaction: NDArray[np.float64]
     following: NDArray[np.float64]
+    locked: NDArray[np.float64]
     cycling: NDArray[np.bool_]
     flow: Flow | None
     supports: Sequence[NDArray[np.float64] | None]
@@ -85,8 +90,8 @@ def step_result(
     end = _end(assembled, attempt)
     problem, balance, state = end.problem, end.balance, end.state
     model, constraints, springs = problem.model, problem.constraints, problem.springs
-    carried = end.reaction if constraints.links is None else end.reaction - constraints.links.forces(end.reaction)
-    by_supports = carried.reshape(-1, model.dim)
+    linked = np.zeros_like(end.reaction) if constraints.links is None else constraints.links.forces(end.reaction)
+    by_supports = (end.reaction - linked).reshape(-1, model.dim)
     sampled = assembled.bodies.stress(end.motion)
     points = model.mesh.points if model.small_strains else model.mesh.points + end.nodal
     points, solids = np.ascontiguousarray(points), model.deformable
@@ -131,6 +136,7 @@ def step_result(
         stress_error=stress_error(solids, end.nodal, sampled, values, contacts) if strained else None,
         remembered=remembered(solids, end.motion.history),
         flow=end.flow,
+        preloads=_preloads(end, linked),
     )
     return step, acting
 
@@ -159,10 +165,13 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
     for term in problem.terms:
         if isinstance(term, FollowerLoads):
             following -= known[term.name]
-    loads = assembled.loaded.forces @ balance.factors + following
+    locked = np.zeros_like(displacement)
+    if LockedPreloads.name in balance.forces:
+        locked -= balance.forces[LockedPreloads.name]
+    loads = assembled.loaded.forces @ balance.factors + following + locked
     reaction = internal - loads - contact_force
     return _End(
-        problem, balance, state, motion, displacement, pressures, internal, loads, reaction, following, cycling,
+        problem, balance, state, motion, displacement, pressures, internal, loads, reaction, following, locked, cycling,
         flow(problem.model.deformable, motion.history), supports,
     )  # fmt: skip
 
@@ -244,6 +253,15 @@ def _rigid(end: _End, body: RigidBody, forces: NDArray[np.float64]) -> RigidResu
         return RigidResult(moved, turn, *body.resultant(forces, end.nodal))
     given = body.prescribed(histories)[1] @ weights(histories, end.state.time)
     return RigidResult(*body.motion(end.nodal, given), *body.resultant(forces))
+
+
+def _preloads(end: _End, linked: NDArray[np.float64]) -> dict[str, PreloadResult]:
+    """linked: forces (dim n_points,) of what holds points together."""
+    model = end.problem.model
+    if not model.preloads:
+        return {}
+    drawn = preload_forces(model) @ end.balance.factors + end.locked
+    return preload_results(model, end.state, end.displacement, drawn, linked)
 
 
 def _contacts(

@@ -163,7 +163,7 @@ class Run:
         are taken in parts where they fail."""
         model, pairs = self.model, self.assembled.problem.pairs
         if model.finite and pairs:
-            return pace_of(model.solve.steps, model.solve.times, model.histories)
+            return pace_of(model.solve.steps, model.solve.times, (*model.histories, *model.locking))
         return given_pace(model.ends, model.finite or any(pair.frictional for pair in pairs))
 
     def so_far(self, complete: bool) -> Solution:

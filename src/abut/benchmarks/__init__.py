@@ -23,6 +23,7 @@ from abut.benchmarks import (
     hertz,
     patch,
     plastic,
+    preloads,
     punches,
     stability,
 )
@@ -55,5 +56,6 @@ BENCHMARKS: dict[str, Benchmark] = {
         *plastic.BENCHMARKS,
         *finite_edges.BENCHMARKS,
         *finite_stacks.BENCHMARKS,
+        *preloads.BENCHMARKS,
     )
 }

@@ -87,7 +87,7 @@ def job_table(model: Model, mesh: str) -> Json:
         del table["model"]
     table["materials"] = {n: {"kind": MATERIALS[type(m)], **_plain(m)} for m, n in materials.items()}
     table["solids"] = [_plain(solid) | {"material": materials[solid.material]} for solid in model.solids]
-    for name in ("supports", "loads", "contacts", "equations", "rigid", "rotations", "couplings", "probes"):
+    for name in ("supports", "loads", "contacts", "equations", "rigid", "rotations", "couplings", "preloads", "probes"):
         kinds: dict[str, Callable[[Any], Json]] = {"loads": _load, "contacts": _contact}
         of = kinds.get(name, _plain)
         records = [of(record) for record in getattr(model, name)]

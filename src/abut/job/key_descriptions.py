@@ -29,6 +29,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "equations": "linear equations between displacements",
         "rigid": "bodies that move as a whole",
         "couplings": "points that move with a reference point, which carries forces and moments",
+        "preloads": "bolts that are tightened: sections of bodies whose sides are drawn together",
         "rotations": "surfaces, node sets and bodies that turn about an axis; not with small kinematics",
         "probes": "points, lines and sets of nodes whose results are listed for every step",
         "solve": "load steps, linear solver, iterations",
@@ -224,6 +225,17 @@ MEANINGS: dict[str, dict[str, str]] = {
         "ry": "rotation about y; left out: free [radian]",
         "rz": "rotation about z (in 2D the only one); left out: free [radian]",
         "amplitudes": "of single components, { y = [...], rz = [...] }: pairs of time and factor; others follow amplitude",
+    },
+    "PreloadTable": {
+        "name": "a name of your choice, used in messages and results",
+        "body": "name of the body, which abut cuts open at the cells next to a plane",
+        "point": "a point of the plane, with normal; left out: the middle of the body's thinnest part, away from contacts "
+        "[length]",
+        "normal": "direction of the tension, of any length; left out: along the body, or across the surface",
+        "surface": "in place of body: a surface between the cells of a body, all the way through",
+        "force": "tension of what is modelled (half of it for half a bolt; axisymmetric: of the full circumference) [force]",
+        "shortening": "in place of force: how far the two sides are drawn over each other [length]",
+        "lock": "time from which on the shortening stays what the force has made of it; left out: never",
     },
     "ContactTable": {
         "name": "a name of your choice; left out: both surfaces, A-B",

@@ -37,6 +37,7 @@ from abut.model import (
     Model,
     Moment,
     NodalForce,
+    Preload,
     Pressure,
     Probe,
     Rigid,
@@ -159,6 +160,7 @@ def _model(file: JobFile, folder: Path, refine: int) -> tuple[Model, Resolved]:
         rigid=[Rigid(**values(r, f"rigid[{i}]")) for i, r in enumerate(file.rigid)],
         rotations=[Rotation(**values(r, f"rotations[{i}]")) for i, r in enumerate(file.rotations)],
         couplings=[Coupling(**values(c, f"couplings[{i}]")) for i, c in enumerate(file.couplings)],
+        preloads=[Preload(**values(p, f"preloads[{i}]")) for i, p in enumerate(file.preloads)],
         probes=[Probe(**values(probe, f"probes[{i}]")) for i, probe in enumerate(file.probes)],
     )
     return model, resolved

@@ -144,6 +144,20 @@ class CouplingTable(Table):
     amplitudes: dict[str, Points] = {}
 
 
+class PreloadTable(Table):
+    """a section of a body whose two sides are drawn together, as tightening does to a bolt"""
+
+    name: str
+    body: str = ""
+    point: list[Number] | None = None
+    normal: list[Number] | None = None
+    surface: str = ""
+    force: Number | None = None
+    shortening: Number | None = None
+    amplitude: Points | None = None
+    lock: Number | None = None
+
+
 class RotationTable(Table):
     """rotation about an axis, exactly on arcs"""
 
@@ -307,6 +321,7 @@ class JobFile(Table):
     rigid: list[RigidTable] = []
     rotations: list[RotationTable] = []
     couplings: list[CouplingTable] = []
+    preloads: list[PreloadTable] = []
     probes: list[ProbeTable] = []
     solve: SolveTable = SolveTable()
     output: OutputTable = OutputTable()

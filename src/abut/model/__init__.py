@@ -1,18 +1,21 @@
 """What the user states, as frozen records that check themselves and each other."""
 
+from abut.model.axes import Axes
 from abut.model.body_forces import BodyForce, Centrifugal, Gravity, Load
 from abut.model.conditions import Amplitude, Equation, History, Rigid, Support, Term
 from abut.model.contact import LAWS, METHODS, PRESSURES, RULES, Contact, Integration
 from abut.model.coupling import Coupling
 from abut.model.loads import Force, Moment, NodalForce, Pressure, Temperature, Traction
 from abut.model.model import PLANES, Model
+from abut.model.preload import Preload
 from abut.model.probe import Probe
 from abut.model.rotation import Rotation
 from abut.model.solid import Solid
 from abut.model.solve_options import SolveOptions
 
 __all__ = [
-    "LAWS", "METHODS", "PLANES", "PRESSURES", "RULES", "Amplitude", "BodyForce", "Centrifugal", "Contact", "Coupling",
-    "Equation", "Force", "Gravity", "History", "Integration", "Load", "Model", "Moment", "NodalForce", "Pressure", "Probe",
-    "Rigid", "Rotation", "Solid", "SolveOptions", "Support", "Temperature", "Term", "Traction",
+    "LAWS", "METHODS", "PLANES", "PRESSURES", "RULES", "Amplitude", "Axes", "BodyForce", "Centrifugal", "Contact",
+    "Coupling", "Equation", "Force", "Gravity", "History", "Integration", "Load", "Model", "Moment", "NodalForce",
+    "Preload", "Pressure", "Probe", "Rigid", "Rotation", "Solid", "SolveOptions", "Support", "Temperature", "Term",
+    "Traction",
 ]  # fmt: skip

@@ -35,6 +35,7 @@ from abut.model.consistency import check_equations, check_loads, check_rigid, ch
 from abut.model.contact import GEOMETRIES, Contact
 from abut.model.coupling import Coupling, check_couplings, moving_points
 from abut.model.kinematics import check_finite, check_kinematics
+from abut.model.preload import Preload, cut_sections
 from abut.model.probe import Probe, check_probes
 from abut.model.rotation import Rotation, check_rotations
 from abut.model.side_choice import SAME, decided, held_points, measured
@@ -84,6 +85,8 @@ class Model:
         Prescribed turns, for kinematics "finite".
     couplings : sequence of Coupling
         Points that move with a reference.
+    preloads : sequence of Preload
+        Bolts that are tightened; the mesh is cut open at their sections.
 
     Raises
     ------
@@ -122,6 +125,7 @@ class Model:
     kinematics: str = "small"
     rotations: Sequence[Rotation] = ()
     couplings: Sequence[Coupling] = ()
+    preloads: Sequence[Preload] = ()
 
     def __post_init__(self) -> None:
         for name in (
@@ -134,10 +138,12 @@ class Model:
             "probes",
             "rotations",
             "couplings",
+            "preloads",
         ):
             object.__setattr__(self, name, tuple(getattr(self, name)))
         check_entries(self.mesh)
         self._check_plane()
+        self._cut()
         check_rigid(self.mesh, self.rigid)
         check_couplings(self.mesh, self.couplings, self.rigid, self.finite)
         self._check_solids()
@@ -191,7 +197,9 @@ class Model:
     @property
     def histories(self) -> tuple[History, ...]:
         """The different histories of everything prescribed, the ramp first."""
-        given = (*self.supports, *self.loads, *self.equations, *self.rigid, *self.contacts, *self.rotations)
+        given = (
+            *self.supports, *self.loads, *self.equations, *self.rigid, *self.contacts, *self.rotations, *self.preloads,
+        )  # fmt: skip
         amplitudes = [item.amplitude for item in given] + [coupling.amplitude for coupling in self.couplings]
         friction = (contact.friction_amplitude for contact in self.contacts)
         of_rigid = (history for body in self.referenced for history in body.amplitudes.values())
@@ -204,8 +212,13 @@ class Model:
         given = self.solve.ends
         rubs = any(contact.frictional for contact in self.contacts)
         if not (rubs or self.finite) and all(material.constant for material in self.materials.values()):
-            return given
-        return with_corners(given, self.histories)
+            return with_corners(given, self.locking)
+        return with_corners(given, (*self.histories, *self.locking))
+
+    @property
+    def locking(self) -> tuple[History, ...]:
+        """Histories with a corner where a preload is locked: load steps end there."""
+        return tuple(history for preload in self.preloads for history in preload.locking)
 
     def sides(self, contact: Contact) -> Sides:
         """Contactor and target of one of the contacts as surfaces; bodies as far as they can meet the other side."""
@@ -258,6 +271,22 @@ class Model:
     def temperatures(self, time: float) -> dict[str, float]:
         """Change of temperature of each solid body as a whole, which follows the ramp (degrees)."""
         return {solid.body: time * solid.temperature for solid in self.solids}
+
+    def _cut(self) -> None:
+        """Open the mesh at the sections of preloads."""
+        solid = {solid.body for solid in self.solids}
+        for i, preload in enumerate(self.preloads):
+            if preload.body in self.mesh.bodies and preload.body not in solid:
+                raise InputError(f"preloads[{i}].body: body '{preload.body}' is rigid and cannot be tightened")
+        sides = [
+            names
+            for contact in self.contacts
+            for side in contact.named
+            for names in ([side] if isinstance(side, str) else side)
+        ]
+        mesh, preloads = cut_sections(self.mesh, self.preloads, sides, self.loads)
+        object.__setattr__(self, "mesh", mesh)
+        object.__setattr__(self, "preloads", preloads)
 
     def _check_plane(self) -> None:
         if self.dim == 2:

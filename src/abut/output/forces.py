@@ -1,4 +1,4 @@
-"""forces.csv: force over displacement of every support, coupling and rigid body, step by step."""
+"""forces.csv: force over displacement of every support, coupling, rigid body and preload, step by step."""
 
 from __future__ import annotations
 
@@ -9,22 +9,25 @@ from typing import Any
 import numpy as np
 
 from abut.model import Coupling
+from abut.model.preload import sections
 from abut.solution import Solution, Step
 
 FILE = "forces.csv"
 
 
 def table(solution: Solution) -> str:
-    """A row for each step and each support, coupling and rigid body: motion, and force (moment) that holds or moves it.
+    """A row for each step and each support, coupling, rigid body and preload: motion, and force (moment) that holds or moves
+    it.
 
     Of a support (surface, node set or body) the displacement is the mean of its nodes, and the force the sum of theirs; of
     couplings and rigid bodies both are those of the reference. Rotations and moments of supports are empty. Free components
-    have no force."""
+    have no force. Of a preload the displacement is its shortening along the normal of the section, force and moment what the
+    side before the section exerts on that beyond it."""
     dim = solution.model.dim
     axes, turns = "xyz"[:dim], "z" if dim == 2 else "xyz"
     head = ["step", "factor", "converged", "kind", "name"]
     head += [f"{name}_{axis}" for name in ("displacement", "force") for axis in axes]
-    if solution.model.referenced:
+    if solution.model.referenced or solution.model.preloads:
         head += [f"{name}_{axis}" for name in ("rotation", "moment") for axis in turns]
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
@@ -40,6 +43,10 @@ def table(solution: Solution) -> str:
             result = step.rigid[own_name]
             parts = (result.displacement, result.force, result.rotation, result.moment)
             rows.writerow([*_step(step), kind, own_name, *np.concatenate(parts).tolist()])
+        for section in sections(solution.model.mesh, solution.model.preloads):
+            carried = step.preloads[section.preload.name]
+            values = [*(carried.shortening * section.normal).tolist(), *carried.force.tolist(), *[""] * len(turns)]
+            rows.writerow([*_step(step), "preload", section.preload.name, *values, *carried.moment.tolist()])
     return text.getvalue()
 
 

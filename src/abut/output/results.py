@@ -35,7 +35,7 @@ from abut.output.fields import WriteFields, found_name, is_whole, write_fields
 from abut.output.lock import Lock
 from abut.output.options import EVERYTHING, Output, single
 from abut.report import Origin, write_report
-from abut.solution import Solution, Step
+from abut.solution import PreloadResult, Solution, Step
 from abut.solution.grids import contact_grid
 from abut.types import Json
 
@@ -241,6 +241,7 @@ def _step_summary(step: Step) -> Json:
         "rigid": {
             body: {name: value.tolist() for name, value in vars(result).items()} for body, result in step.rigid.items()
         },
+        **({"preloads": {name: _preload(result) for name, result in step.preloads.items()}} if step.preloads else {}),
         "probes": probes.summary(step),
         "cycling": {name: facets.tolist() for name, facets in step.cycling.items()},
         "unsettled": [
@@ -253,6 +254,10 @@ def _step_summary(step: Step) -> Json:
             for place in unsettled(step)
         ],
     }
+
+
+def _preload(result: PreloadResult) -> Json:
+    return {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in vars(result).items()}
 
 
 def _flow(step: Step) -> Json:

@@ -26,8 +26,10 @@ from abut.problem.kinematics import Kinematics
 from abut.problem.loads import Loads, followers, loads
 from abut.problem.neutral_motions import neutral_motions
 from abut.problem.pair import Pair
+from abut.problem.preloads import LockedPreloads
 from abut.problem.problem import ContactProblem
 from abut.problem.restraint import require_balance, require_unmoved, restraint
+from abut.problem.terms import Term
 from abut.problem.turning_ties import CurrentTie, turning_tie
 from abut.solution import Observer, Phase
 
@@ -77,20 +79,16 @@ def assemble(
     require_unmoved(restrained, forces)
     _check_finite(reduced.diagonal(), loaded.forces)
     n_free = reduced.shape[0]
-    constant = model.deformable.constant
-    affine = constant and not model.finite
     bodies: Bodies
-    if constant:
+    if model.deformable.constant:
         bodies = LinearBodies(backend, loaded, model.histories, model.temperatures)
     else:
         bodies = SolidBodies(model, loaded, backend)
+    beside = _beside(model, constraints, loaded)
+    affine = not model.finite and bodies.constant and all(term.constant for term in beside)
     problem = ContactProblem(
         model=model,
-        terms=(
-            bodies,
-            DeadLoads(loaded, model.histories),
-            *([FollowerLoads(model, constraints.bodies)] if followers(model) else []),
-        ),
+        terms=(bodies, *beside),
         constraints=constraints,
         pairs=every,
         operator=stacked(every, n_free),
@@ -115,6 +113,15 @@ def kinematics(pair: Pair, constraints: Constraints, backend: Backend) -> Kinema
     if pair.tied:
         return CurrentTie(pair, turning_tie(pair, reach))
     return Current(pair, backend.differentiate, taken_off(pair, reach) if pair.contact.adjust else None)
+
+
+def _beside(model: Model, constraints: Constraints, loaded: Loads) -> list[Term]:
+    """What takes part in the balance of forces beside bodies."""
+    terms: list[Term] = [DeadLoads(loaded, model.histories)]
+    if followers(model):
+        terms.append(FollowerLoads(model, constraints.bodies))
+    locked = LockedPreloads.of(model)
+    return terms if locked is None else [*terms, locked]
 
 
 def _describe(pairs: Sequence[Pair], note: Callable[[str], None]) -> None:

@@ -18,7 +18,7 @@ from abut.mesh.mesh import Mesh
 from abut.model import Model, Support
 from abut.problem.elimination import eliminate
 from abut.problem.rigid_bodies import RigidBody, body_rows, rigid_bodies
-from abut.problem.rigid_modes import RigidModes
+from abut.problem.sections import shortenings_of
 from abut.problem.turns import Turn, Turns, about
 from abut.types import Array, Sparse
 
@@ -138,12 +138,6 @@ class Constraints:
         return np.einsum("nda,na->nd", axes, np.where(moves, along, 0.0))
 
 
-def resistance_of_supports(rigid: RigidModes, constraints: Constraints) -> NDArray[np.float64]:
-    """Gram matrix of what supports, equations and rigid bodies take out of the rigid motions."""
-    taken = constraints.taken(rigid.modes)
-    return np.asarray(taken.T @ taken / max(1.0, float(constraints.free.shape[0] - constraints.free.shape[1])))
-
-
 def _gram(free: Sparse, rows: NDArray[np.int64]) -> NDArray[np.float64]:
     """Products of the rows (n, dim) of each point with each other, (n, dim, dim)."""
     count = free.indptr[rows + 1] - free.indptr[rows]
@@ -164,7 +158,7 @@ def supports(model: Model) -> Constraints:
     free, prescribed = _node_by_node(model, tuple(part[~on_bodies] for part in conditions), whole)
     orthonormal, coupled, links, turning = True, False, None, list[Turn]()
     holding = [body for body in bodies if body.holds]
-    if holding or model.equations:
+    if holding or model.equations or model.preloads:
         free, prescribed, links, turning = _together(
             model, free, prescribed, tuple(part[on_bodies] for part in conditions), holding
         )
@@ -179,7 +173,14 @@ def supports(model: Model) -> Constraints:
     turning += _turned(model, free.shape[1])
     turns = Turns(turning, model.dim, len(model.mesh.points)) if model.finite and turning else None
     return Constraints(
-        free, prescribed, largest, orthonormal, coupled, bodies, links if model.equations else None, turns
+        free,
+        prescribed,
+        largest,
+        orthonormal,
+        coupled,
+        bodies,
+        links if model.equations or model.preloads else None,
+        turns,
     )
 
 
@@ -193,7 +194,9 @@ def _together(
     """Add the unknowns of rigid bodies, and eliminate what holds on several points at once: theory (F11), (F12). The turns
     are those of rigid bodies."""
     n_dofs, n_own = free.shape
-    free = sp.hstack([free, *(body.columns(n_dofs) for body in bodies)], format="csr")
+    cut = shortenings_of(model)
+    columns_of = [*(body.columns(n_dofs) for body in bodies), sp.csr_matrix((n_dofs, len(cut)))]
+    free = sp.hstack([free, *columns_of], format="csr")
     rows, values, names = [], [], []
     first = n_own
     for body in bodies:
@@ -208,11 +211,18 @@ def _together(
     rows_of = sp.csr_matrix((direction.ravel(), entries), shape=(len(node), n_dofs))
     linear, constants = equations(model)
     names += [_name(model, i) for i in origin] + [f"equations[{i}]" for i in range(len(model.equations))]
-    points = sp.vstack([rows_of, linear], format="csr")
-    rows.append(_without_rounding(points @ free, abs(points).max(axis=1).toarray().ravel()))
-    values.append(np.concatenate([value, constants]) - points @ prescribed)
+    names += cut.names
+    points = sp.vstack([rows_of, linear, cut.at_points], format="csr")
+    above = sp.csr_matrix((rows_of.shape[0] + linear.shape[0], len(cut)))
+    by_unknowns = points @ free + sp.hstack(
+        [sp.csr_matrix((points.shape[0], first)), sp.vstack([above, cut.by_shortenings])], format="csr"
+    )
+    rows.append(_without_rounding(by_unknowns, abs(points).max(axis=1).toarray().ravel()))
+    values.append(np.concatenate([value, constants, cut.values]) - points @ prescribed)
     every = sp.vstack(rows, format="csr")
     done = eliminate(every, np.concatenate(values), names)
+    cut.require_closing(done.free[first:])
+    linear = sp.vstack([linear, cut.at_points], format="csr")
     others = sp.csr_matrix((every.shape[0] - linear.shape[0], n_dofs))
     of_equations = sp.vstack([others, linear], format="csr")
     links = Links(free, every[done.independent][:, done.pivots], done.pivots, of_equations[done.independent])

@@ -27,6 +27,7 @@ from abut.model import (
 )
 from abut.model.conditions import weights
 from abut.problem.rigid_bodies import RigidBody, rigid_bodies
+from abut.problem.sections import preload_forces
 
 
 @dataclass(frozen=True)
@@ -82,7 +83,7 @@ def applied_load(model: Model, following: bool = False) -> NDArray[np.float64]:
     for load in model.loads:
         if not isinstance(load, Temperature) and _follows(model, load) == following:
             total[:, histories.index(load.amplitude)] += _forces(model, load)
-    return total
+    return total if following else total + preload_forces(model)
 
 
 def nodal_temperature(model: Model) -> NDArray[np.float64]:

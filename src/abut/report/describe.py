@@ -19,6 +19,7 @@ _GROUPS = (
     ("Loads", "loads"),
     ("Rigid bodies", "rigid"),
     ("Couplings", "couplings"),
+    ("Preloads", "preloads"),
     ("Equations", "equations"),
     ("Contacts", "contacts"),
 )

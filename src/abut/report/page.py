@@ -24,6 +24,8 @@ from abut.report.friction import HEAD, friction_history, friction_rows
 from abut.report.lines import pressure_lines
 from abut.report.motion import paths
 from abut.report.origin import Origin, comparison, ellipse
+from abut.report.preloads import HEAD as OF_PRELOADS
+from abut.report.preloads import preload_rows
 from abut.report.probes import charts, probe_table
 from abut.report.quantities import extremes, largest_by_body
 from abut.report.scene import scene
@@ -251,7 +253,8 @@ def _rigid(solution: Solution) -> str:
         for name, r in solution.steps[-1].rigid.items()
     ]
     head = ["rigid body, coupling", "displacement", "rotation", "force on it", "moment about its reference"]
-    return _table(head, rows) if rows else ""
+    carried = _table(OF_PRELOADS, preload_rows(solution), "What preloads carry") if solution.model.preloads else ""
+    return (_table(head, rows) if rows else "") + carried
 
 
 def _beside(beside: Beside) -> str:

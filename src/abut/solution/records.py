@@ -21,6 +21,7 @@ from abut.solution.contacts import Check, ContactResult, worst
 from abut.solution.energy import Energy
 from abut.solution.flow import Flow
 from abut.solution.idle import idle_contacts
+from abut.solution.preloads import PreloadResult, preload_checks
 from abut.solution.progress import Iteration
 from abut.solution.state import State
 from abut.solution.stress_error import StressError
@@ -122,6 +123,7 @@ class Step:
         default_factory=dict
     )  # by materials, at points: (n_points, ...)
     flow: Flow | None = None  # None where no material yields
+    preloads: Mapping[str, PreloadResult] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         """The main numbers, in some lines."""
@@ -179,6 +181,7 @@ class Step:
         """Largest component of any resultant, now or in a step before."""
         forces = [self.load, self.reaction, *(c.force for c in self.contacts), *self.reactions.values()]
         forces += [body.force for body in self.rigid.values()]
+        forces += [section.force for section in self.preloads.values()]
         return max(*(float(np.abs(f).max(initial=0.0)) for f in forces), self.earlier, 1e-300)
 
 
@@ -311,6 +314,7 @@ class Solution:
                                    "or near contact; what nodes show is closer",
                                    pressure=float(np.sqrt(step.stress_error.energy)), highest=True,
                                    notice=STRESS_NOTICED))  # fmt: skip
+            model += preload_checks(step.preloads)
             for check in (*model, *(c for contact in step.contacts for c in contact.checks)):
                 lines.setdefault((check.contact, check.name), []).append(check)
         checks = [worst(checks) for checks in lines.values()]

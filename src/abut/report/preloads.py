@@ -1,0 +1,38 @@
+"""Preloads in the report: what every bolt carries, step by step."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from abut.model.preload import sections
+from abut.solution import Solution
+
+HEAD = ["preload", "step", "tension", "shear", "bending moment", "shortening", "state"]
+MOST = 200  # rows
+
+
+def preload_rows(solution: Solution) -> list[list[str]]:
+    """One for each preload and step, of the last steps where they are many."""
+    rows = list(_rows(solution))
+    return rows[-MOST:]
+
+
+def _rows(solution: Solution) -> Iterator[list[str]]:
+    for step in solution.steps:
+        for section in sections(solution.model.mesh, solution.model.preloads):
+            result = step.preloads[section.preload.name]
+            across = result.force - (result.force @ section.normal) * section.normal
+            bent = result.moment
+            if len(bent) == 3:
+                bent = bent - (bent @ section.normal) * section.normal
+            state = (
+                "locked"
+                if result.kept is not None
+                else "shortening given"
+                if result.prescribed is None
+                else "force given"
+            )
+            numbers = (result.tension, np.linalg.norm(across), np.linalg.norm(bent), result.shortening)
+            yield [section.preload.name, f"{step.number}", *(f"{value:.6g}" for value in numbers), state]
