@@ -114,7 +114,7 @@ public:
 
 private:
   static constexpr int AT[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
-  static constexpr double NEAR = 1e-2; // a sample at the centre counts by 100, one as far as cells reach by about 1
+  static constexpr double NEAR = 0.1; // a sample at the centre counts by 100, one as far as cells reach by about 1
   using Image = std::array<std::int32_t, 3>; // planes, one after the other
 
   void find_images(std::size_t k) {
@@ -174,7 +174,7 @@ private:
     double away = 0;
     for (int a = 0; a < dim; ++a)
       away += xi[a] * xi[a];
-    return 1 / (NEAR + away);
+    return 1 / ((NEAR + away) * (NEAR + away));
   }
 
   // Cholesky's factor of the second moments of the corners of all cells about the centre.

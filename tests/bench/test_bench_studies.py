@@ -42,6 +42,19 @@ def test_a_finer_contactor_is_told() -> None:
     assert "sides" not in {check.name for check in right.certificate}
 
 
+@pytest.mark.long
+def test_a_little_finer_tetrahedra_are_told() -> None:
+    """From 1.25 times as fine on; the same meshes of hexahedra do no harm."""
+    cases = {cell: problems.ball((cell, cell), 1.0, (6, 8)) for cell in ("tet4", "hex8")}
+    told = {}
+    for cell, case in cases.items():
+        wrong = abut.solve(case.forced(1))
+        told[cell] = [check.passed for check in wrong.certificate if check.name == "sides"]
+        if cell == "tet4":
+            assert case.error(wrong) > 0.06 > case.error(abut.solve(case.forced(0)))
+    assert told == {"tet4": [False], "hex8": []}
+
+
 def test_every_facet_type_is_in_the_study() -> None:
     """On both sides alike, and all problems of a part can be built."""
     cells = {cell for part in study.PARTS.values() for pair in part.cells for cell in pair}

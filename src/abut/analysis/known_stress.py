@@ -10,9 +10,9 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut.analysis.strain_gauges import gauges
+from abut.analysis.surface_slopes import SurfacePoints, surface_stress
 from abut.bodies.recovery import Equations
-from abut.bodies.stress import PointStress
+from abut.bodies.solids import TemperatureChange
 from abut.cells import MAX_FACET_NODES
 from abut.contact.geometry import area_vectors, full_moments, split_at_creases
 from abut.contact.nodal_recovery import carry_to_target
@@ -23,6 +23,7 @@ from abut.model import Force, Load, Model, NodalForce, Pressure, Traction
 from abut.model.conditions import COMPONENTS, Support, weights
 from abut.problem.pair import Pair
 from abut.solution import ContactResult
+from abut.types import Sparse
 
 ALONG = 1e-6  # sine of the angle between a facet's normal and an axis up to which it is along it
 ACROSS = 0.7  # of a surface that meets a plane at more than 45 degrees: the plane's own facets are not meant
@@ -72,21 +73,29 @@ class _Skin:
 def known_stress(
     model: Model,
     points: Vector,
+    displacement: Vector,
     time: float,
-    pairs: Sequence[Pair],
-    contacts: Sequence[ContactResult],
-    sampled: PointStress,
+    temperature: TemperatureChange,
+    contacts: Sequence[tuple[Pair, ContactResult]],
 ) -> Equations:
-    """Equations for the stress at the end of a step. points: (n_points, dim) where they are now; contacts: results of the
-    pairs; sampled: the stresses of the cells."""
+    """Equations for the stress at the end of a step. points: (n_points, dim) where they are now; displacement: (n_points,
+    dim)."""
     skin = _Skin.of(model, points)
     factors = dict(zip(model.histories, weights(model.histories, time)))
     for load in model.loads:
         _add_load(model, skin, load, factors[load.amplitude])
-    for pair, contact in zip(pairs, contacts):
+    for pair, contact in contacts:
         _add_contact(skin, pair, contact)
     _add_supports(model, skin)
-    return _with_gauges(model, skin, _equations(model, skin), sampled)
+    pieces = _Pieces.of(model, skin)
+    whole = np.flatnonzero(_alone(model, skin, pieces))
+    still = replace(skin.surface, points=model.mesh.points)
+    at = SurfacePoints(
+        pieces.node[whole], pieces.visits[:, whole].T.tocsr(), pieces.still[whole], pieces.mirrored[whole],
+        pieces.traction[whole],
+    )  # fmt: skip
+    stress, found = surface_stress(model.deformable, still, displacement, temperature, at)
+    return _equations(model, skin, pieces, whole[found], stress[found])
 
 
 def _add_load(model: Model, skin: _Skin, load: Load, factor: float) -> None:
@@ -184,63 +193,97 @@ def _marked(model: Model, nodes: NDArray[np.int64]) -> NDArray[np.bool_]:
     return marked
 
 
-def _equations(model: Model, skin: _Skin) -> Equations:
-    of, dim, surface = model.deformable.patches, model.dim, skin.surface
-    body = model.deformable.body_of[surface.cells]
-    _, part = np.unique(np.column_stack([body, skin.source, skin.unknown]), axis=0, return_inverse=True)
-    split, owner = split_at_creases(surface)
-    facet, local = np.nonzero(surface.nodes >= 0)
-    smooth = split.nodes[facet, local].astype(np.int64)
-    area = np.zeros((len(split.points), dim))
-    np.add.at(area, smooth, area_vectors(surface)[facet, local])
-    for axis in range(dim):  # a curved surface that goes on beyond a plane has its normal in the plane
-        nodes = surface.nodes[skin.mirrored[:, axis]]
-        there = _marked(model, nodes[nodes >= 0].astype(np.int64))[owner] & (
-            np.abs(area[:, axis]) < ACROSS * np.linalg.norm(area, axis=1)
+@dataclass(frozen=True)
+class _Pieces:
+    """The points of smooth pieces of the outside on which tractions come from the same sources. node: (n,) of the mesh; x,
+    normal, traction: (n, dim) now, per current area; still: (n, dim) normal of undeformed bodies; known: (n, dim)
+    components of the traction; mirrored: (n, dim) whether a plane across an axis continues the body there; visits:
+    (n_facets, n) CSR, nonzero where a facet of the piece has the point; plane: (n,) whether the piece is such a plane."""
+
+    node: NDArray[np.int64]
+    x: Vector
+    normal: Vector
+    still: Vector
+    traction: Vector
+    known: NDArray[np.bool_]
+    mirrored: NDArray[np.bool_]
+    visits: Sparse
+    plane: NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, model: Model, skin: _Skin) -> _Pieces:
+        dim, surface = model.dim, skin.surface
+        body = model.deformable.body_of[surface.cells]
+        _, part = np.unique(np.column_stack([body, skin.source, skin.unknown]), axis=0, return_inverse=True)
+        split, owner = split_at_creases(surface)
+        facet, local = np.nonzero(surface.nodes >= 0)
+        smooth = split.nodes[facet, local].astype(np.int64)
+        ends = np.stack(
+            [
+                _marked(model, nodes[nodes >= 0].astype(np.int64))
+                for nodes in map(surface.nodes.__getitem__, skin.mirrored.T)
+            ],
+            axis=1,
         )
-        area[there, axis] = 0.0
-    normal = area / np.maximum(np.linalg.norm(area, axis=1, keepdims=True), 1e-300)
-    keys, point = np.unique(smooth * (int(part.max(initial=0)) + 1) + part.ravel()[facet], return_inverse=True)
-    n, point = len(keys), point.ravel()
-    one = np.zeros(n, dtype=np.int64)
-    one[point] = np.arange(len(point))  # a visit of each
-    normal, x = normal[smooth[one]], surface.points[owner[smooth[one]]]
-    count = np.bincount(point, minlength=n)
-    t = np.stack(
-        [np.bincount(point, skin.traction[facet, local, a], n) / count for a in range(dim)], axis=1
-    ) - (np.bincount(point, skin.pressure[facet, local], n) / count)[:, None] * normal  # fmt: skip
-    known = ~skin.unknown[facet[one]] & normal.any(axis=1)[:, None]
-    visits = sp.csr_matrix((np.ones(len(facet)), (facet, point)), shape=(len(surface), n))
-    around = (of.skin[:, of.free] @ visits).tocsr()
-    parts = [(np.flatnonzero(known[:, a]), a) for a in range(dim)]
-    coefficients = []
-    for rows, a in parts:
-        own = np.zeros((len(rows), 4 if dim == 2 else 6))
-        for b in range(dim):
-            own[:, TABLE[dim][a][b]] = normal[rows, b]
-        coefficients.append(own)
+        keys, point = np.unique(smooth * (int(part.max(initial=0)) + 1) + part.ravel()[facet], return_inverse=True)
+        n, point = len(keys), point.ravel()
+        one = np.zeros(n, dtype=np.int64)
+        one[point] = np.arange(len(point))  # a visit of each
+        smooth, node = smooth[one], owner[smooth[one]]
+        count = np.bincount(point, minlength=n)
+        now, still = (
+            _normals(replace(surface, points=points), split.nodes, ends[owner])[smooth]
+            for points in (surface.points, model.mesh.points)
+        )
+        pressure = np.bincount(point, skin.pressure[facet, local], n) / count
+        along = [np.bincount(point, skin.traction[facet, local, a], n) / count for a in range(dim)]
+        return cls(
+            node, surface.points[node], now, still, np.stack(along, axis=1) - pressure[:, None] * now,
+            np.asarray(~skin.unknown[facet[one]] & now.any(axis=1, keepdims=True)), ends[node],
+            sp.csr_matrix((np.ones(len(facet)), (facet, point)), shape=(len(surface), n)),
+            np.asarray(skin.mirrored[facet[one]].any(axis=1)),
+        )  # fmt: skip
+
+
+def _normals(surface: Surface, split: NDArray[np.int32], ends: NDArray[np.bool_]) -> Vector:
+    """Mean normals (n, dim) at points of smooth sides; split: these points at the facets' nodes; ends: (n, dim) which lie on
+    planes: a curved surface that goes on beyond one has its normal in the plane."""
+    facet, local = np.nonzero(split >= 0)
+    area = np.zeros(ends.shape)
+    np.add.at(area, split[facet, local], area_vectors(surface)[facet, local])
+    steep = np.abs(area) >= ACROSS * np.linalg.norm(area, axis=1, keepdims=True)
+    area[ends & ~steep] = 0.0
+    return np.asarray(area / np.maximum(np.linalg.norm(area, axis=1, keepdims=True), 1e-300))
+
+
+def _alone(model: Model, skin: _Skin, pieces: _Pieces) -> NDArray[np.bool_]:
+    """At which points (n,) the whole traction is known, and there is no other piece or body."""
+    of, n = model.deformable.patches, len(model.mesh.points)
+    others = np.bincount(pieces.node[~pieces.plane], minlength=n) > 1
+    others |= np.bincount(of.point, minlength=n) > 1
+    return np.asarray(pieces.known.all(axis=1) & ~pieces.plane & ~others[pieces.node])
+
+
+def _equations(model: Model, skin: _Skin, pieces: _Pieces, whole: NDArray[np.int64], stress: Vector) -> Equations:
+    """The components of the traction that are known at points of pieces, or all of the stress (n, 4 or 6) at some points,
+    ``whole`` (n,)."""
+    of, dim = model.deformable.patches, model.dim
+    around = (of.skin[:, of.free] @ pieces.visits).tocsr()
+    components = stress.shape[1]
+    told = pieces.known.copy()
+    told[whole] = False
+    rows, axis = np.nonzero(told)
+    coefficients = np.zeros((len(rows), components))
+    for b in range(dim):
+        coefficients[np.arange(len(rows)), np.array(TABLE[dim])[axis, b]] = pieces.normal[rows, b]
+    each = np.repeat(whole, components)
     planes, bare = _planes(of, skin)
     return Equations(
-        np.concatenate([x[rows] for rows, _ in parts]), np.concatenate(coefficients),
-        np.concatenate([t[rows, a] for rows, a in parts]), sp.hstack([around[:, rows] for rows, _ in parts]).tocsr(),
-        planes, np.eye(dim), bare,
-    )  # fmt: skip
-
-
-def _with_gauges(model: Model, skin: _Skin, known: Equations, sampled: PointStress) -> Equations:
-    """What strains along the surface tell beside, where the whole traction is known."""
-    used = skin.surface.nodes >= 0
-    area = area_vectors(skin.surface)
-    normal = area / np.maximum(np.linalg.norm(area, axis=2, keepdims=True), 1e-300)
-    nodal = np.where(used[..., None], skin.traction - skin.pressure[..., None] * normal, 0.0)
-    traction = nodal.sum(axis=1) / used.sum(axis=1, keepdims=True)
-    whole = np.asarray(~(skin.unknown | skin.mirrored).any(axis=1))
-    found = gauges(model.deformable, skin.surface, sampled, whole, traction)
-    of = model.deformable.patches
-    return replace(
-        known, x=np.concatenate([known.x, found.x]), coefficients=np.concatenate([known.coefficients, found.coefficients]),
-        value=np.concatenate([known.value, found.value]),
-        of=sp.hstack([known.of, of.skin[:, np.flatnonzero(of.free)[found.facet]]]).tocsr(),
+        np.concatenate([pieces.x[rows], pieces.x[each]]),
+        np.concatenate([coefficients, np.tile(np.eye(components), (len(whole), 1))]),
+        np.concatenate([pieces.traction[rows, axis], stress.ravel()]),
+        sp.hstack([around[:, rows], around[:, each]]).tocsr(),
+        planes, np.eye(dim), bare, pieces.node[whole], stress,
     )  # fmt: skip
 
 

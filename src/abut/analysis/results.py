@@ -23,6 +23,7 @@ from abut.analysis.stress_error import stress_error
 from abut.analysis.surface_stress import normal_stress
 from abut.bodies.averages import averages
 from abut.bodies.recovery import at_points, recovered
+from abut.bodies.solids import TemperatureChange
 from abut.cells import MAX_FACET_NODES
 from abut.mesh.surface import Surface
 from abut.model import Model
@@ -96,7 +97,10 @@ def step_result(
     points = model.mesh.points if model.small_strains else model.mesh.points + end.nodal
     points, solids = np.ascontiguousarray(points), model.deformable
     contacts = _contacts(end, attempt, before, averages(solids, sampled))
-    known = known_stress(model, points, state.time, balance.pairs, contacts, sampled)
+    change = TemperatureChange(
+        model.temperatures(state.time), assembled.loaded.temperature @ weights(model.histories, state.time)
+    )
+    known = known_stress(model, points, end.nodal, state.time, change, list(zip(balance.pairs, contacts)))
     values = recovered(solids, points, sampled, known)
     stress = at_points(solids.patches, values, len(points))
     told = _finite_energy if model.finite else _energy

@@ -18,11 +18,12 @@ from abut.errors import ConvergenceError, SingularModelError, Unsound
 from abut.linear.solver import LinearSolver, NotConverged
 from abut.model import Model
 from abut.model.conditions import weights
+from abut.model.offset import offsets
 from abut.model.side_choice import choices
 from abut.nonlinear.large_steps import LargeSteps
 from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.march import Control, Stepper, march
-from abut.nonlinear.pace import Pace, given_pace, pace_of
+from abut.nonlinear.pace import Pace, Slips, given_pace, pace_of
 from abut.nonlinear.stabilised import STRIDES
 from abut.nonlinear.stepping import SmallSteps
 from abut.probing import Place, find_places, read
@@ -30,7 +31,7 @@ from abut.problem.assembly import Assembled, assemble, prescribed
 from abut.problem.clock import Clock
 from abut.problem.restraint import require_balance
 from abut.problem.stabilising import is_dragged
-from abut.problem.step_error import landed_in
+from abut.problem.step_error import Onset, landed_in, onset
 from abut.solution import Iteration, Observer, OnStep, Phase, Saved, Solution, Step
 from abut.solution.state import State
 
@@ -139,12 +140,24 @@ class Run:
                 f"time {time:.6g} first, not to {attempt.time:.6g}"
             )
 
-        control = Control(solve.max_iterations, iterated, begins, prepares, self.told.note, self._fallback, halves)
+        def slip(before: State, now: State) -> Onset:
+            return onset(problem.pairs, before, now, weights(self.model.histories, now.time))
+
+        def refines(attempt: Attempt, time: float) -> None:
+            self.told.note(
+                f"step {attempt.number} to time {attempt.time:.6g} jumps over the onset of slip: it goes to time {time:.6g} "
+                "first"
+            )
+
+        control = Control(
+            solve.max_iterations, iterated, begins, prepares, self.told.note, self._fallback, halves, slip, refines
+        )  # fmt: skip
         pace = self._pace()
-        for saved in done:
-            strides = STRIDES if is_dragged(saved.state) else ()
-            pace.repeat(saved.state.time, len(saved.iterations), landed_in(saved.state).share, strides)
         states = [problem.start(), *(saved.state for saved in done)]
+        for before, saved in zip(states, done):
+            strides = STRIDES if is_dragged(saved.state) else ()
+            share, begun = landed_in(saved.state).share, slip(before, saved.state)
+            pace.repeat(saved.state.time, len(saved.iterations), share, begun, strides)
         stepper: Stepper
         if problem.kinematics is not None:
             stepper = LargeSteps(problem, self.solver, control)
@@ -160,11 +173,21 @@ class Run:
 
     def _pace(self) -> Pace:
         """Before the first step. Large sliding finds its own steps; with friction or large displacements those of the user
-        are taken in parts where they fail."""
-        model, pairs = self.model, self.assembled.problem.pairs
+        are taken in parts where they fail, and where there are none the onset of slip has steps of its own."""
+        model, pairs, solve = self.model, self.assembled.problem.pairs, self.model.solve
+        rubs = any(pair.frictional for pair in pairs)
+        slips = Slips(self._fits()) if rubs and solve.finds_steps else None
         if model.finite and pairs:
-            return pace_of(model.solve.steps, model.solve.times, (*model.histories, *model.locking))
-        return given_pace(model.ends, model.finite or any(pair.frictional for pair in pairs))
+            return pace_of(solve.steps, solve.times, (*model.histories, *model.locking), slips)
+        return given_pace(model.ends, model.finite or rubs, slips)
+
+    def _fits(self) -> bool:
+        """Whether surfaces with friction press from the outset, and loads act besides."""
+        problem, at = self.assembled.problem, weights(self.model.histories, self.model.ends[0])
+        moves = (problem.constraints.prescribed @ at).any() or problem.constraints.turns is not None
+        acts = moves or (self.assembled.loaded.forces @ at).any()
+        rubs = [pair.contact for pair in problem.pairs if pair.frictional]
+        return bool(acts) and any(offsets(self.model, contact)[0] < 0.0 for contact in rubs)
 
     def so_far(self, complete: bool) -> Solution:
         """The steps up to here; complete: there are no more to come."""

@@ -27,7 +27,8 @@ class Equations:
     """What is known of the stress at the surface. x: (n, dim); coefficients: (n, 4 or 6) of xx yy zz xy (yz zx), shear
     doubled, whose sum with the stress is value (n,); of: (n_patches, n) CSR, nonzero where an equation takes part in a
     patch; planes: (n_patches, 3) planes through its corner that mirror a patch, -1 for none; normals: (n_planes, dim); bare:
-    (n_patches,) patches that end at a surface which no plane continues."""
+    (n_patches,) patches that end at a surface which no plane continues; node: (m,) points of the mesh, of one body each, at
+    which the whole stress is known, given: (m, 4 or 6)."""
 
     x: Array
     coefficients: Array
@@ -36,14 +37,17 @@ class Equations:
     planes: NDArray[np.int32]
     normals: Array
     bare: NDArray[np.bool_]
+    node: NDArray[np.int64]
+    given: Array
 
 
 def no_equations(of: Patches, dim: int) -> Equations:
     """Nothing is known."""
-    n = len(of.corner)
+    n, none = len(of.corner), np.zeros((0, 4 if dim == 2 else 6))
     return Equations(
-        np.zeros((0, dim)), np.zeros((0, 4 if dim == 2 else 6)), np.zeros(0), sp.csr_matrix((n, 0)),
+        np.zeros((0, dim)), none, np.zeros(0), sp.csr_matrix((n, 0)),
         np.full((n, 3), -1, dtype=np.int32), np.zeros((0, dim)), np.diff(of.skin.indptr) > 0,
+        np.zeros(0, dtype=np.int64), none,
     )  # fmt: skip
 
 
@@ -54,12 +58,14 @@ def recovered(solids: Solids, points: Array, stress: PointStress, known: Equatio
     if known is None:
         known = no_equations(of, dim)
     x, values, first = _samples(solids, points, stress)
-    cells = _widened(of, known)
+    inner = (of.degree == 1) & ~known.bare
+    cells = _widened(of, inner | known.bare)
     centre = np.ascontiguousarray(points[of.point[of.corner]])
     used = list(PLANE) if dim == 2 else list(range(6))
     coefficients, metrics = fit_patches(
         (x, np.ascontiguousarray(values[:, used]), first, _spread(solids, points)),
-        (centre, cells.indptr.astype(np.int64), cells.indices.astype(np.int64), of.degree),
+        (centre, cells.indptr.astype(np.int64), cells.indices.astype(np.int64),
+         np.where(inner, 2, of.degree).astype(np.int32)),
         (known.planes, known.normals),
         (known.of.indptr.astype(np.int64), known.of.indices.astype(np.int64), known.x, known.coefficients, known.value),
         HEAVY,
@@ -69,6 +75,9 @@ def recovered(solids: Solids, points: Array, stress: PointStress, known: Equatio
         np.ascontiguousarray(points[of.point]), of.blend.indptr.astype(np.int64), of.blend.indices.astype(np.int64),
         of.blend.data, centre, coefficients, metrics,
     )  # fmt: skip
+    value = np.zeros(len(points), dtype=np.int64)
+    value[of.point] = np.arange(len(of.point))
+    result[value[known.node][:, None], used] = known.given
     return result
 
 
@@ -185,9 +194,11 @@ def _monomials(kind: str, xi: Array) -> Array:
     return np.stack(columns, axis=1)
 
 
-def _widened(of: Patches, known: Equations) -> Sparse:
-    """The cells of each patch: at the surface also those around the corners of these."""
-    bare = np.flatnonzero(known.bare)
-    wide = (of.around[bare] @ of.around.T) @ of.around
-    place = sp.csr_matrix((np.ones(len(bare)), (bare, np.arange(len(bare)))), shape=(len(of.corner), len(bare)))
-    return (of.around + place @ wide).tocsr()
+def _widened(of: Patches, wide: NDArray[np.bool_]) -> Sparse:
+    """The cells of each patch, of some also those around the corners of these."""
+    if wide.all():
+        return ((of.around @ of.around.T) @ of.around).tocsr()
+    rows = np.flatnonzero(wide)
+    more = (of.around[rows] @ of.around.T) @ of.around
+    place = sp.csr_matrix((np.ones(len(rows)), (rows, np.arange(len(rows)))), shape=(len(of.corner), len(rows)))
+    return (of.around + place @ more).tocsr()

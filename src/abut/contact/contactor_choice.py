@@ -46,12 +46,14 @@ class Side:
     """What the choice looks at, of those facets of a surface that face the other one.
 
     modulus: E / (1 - nu^2), infinite for a rigid side; size: median of the facets where contact begins, a length; covered:
-    share of the area of all of them that lies opposite the other side; normals: whether each facet has one everywhere."""
+    share of the area of all of them that lies opposite the other side; normals: whether each facet has one everywhere;
+    tetrahedra: whether its cells are such of first order, which give way at their corners alone."""
 
     modulus: float
     size: float
     covered: float
     normals: bool = True
+    tetrahedra: bool = False
 
 
 @dataclass(frozen=True)
@@ -113,11 +115,11 @@ def choose(one: Side, other: Side) -> Choice:
 
 def shows_facets(contactor: Side, target: Side) -> bool:
     """Whether a contactor may touch the facets of its target one by one: the rule takes the other side, and it is finer, by
-    a little if it is also stiffer, else by far: less does no harm that would show."""
+    a little if it is also stiffer, or lies on tetrahedra of first order, else by far: less does no harm that would show."""
     choice = choose(contactor, target)
     finer = target.size / contactor.size
-    stiffer = contactor.modulus > STIFFER * target.modulus
-    return choice.contactor == 1 and choice.rule in ("softer", "coarser") and finer > (FINER if stiffer else TWICE)
+    clearly = contactor.modulus > STIFFER * target.modulus or target.tetrahedra
+    return choice.contactor == 1 and choice.rule in ("softer", "coarser") and finer > (FINER if clearly else TWICE)
 
 
 def _bare(side: Side, other: Side) -> bool:

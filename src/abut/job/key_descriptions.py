@@ -283,9 +283,9 @@ MEANINGS: dict[str, dict[str, str]] = {
         "body": "name of the body that is read where points lie on several; left out: the first in the mesh",
     },
     "SolveTable": {
-        "steps": "load steps, equal parts of a linear ramp; auto: one. With friction, a step that does not converge is "
-        "taken in parts, of which only the end is written. With contact under finite kinematics a number gives the longest "
-        "step, and auto leaves all of them to abut",
+        "steps": "load steps, equal parts of a linear ramp; auto: one, with friction as many as the onset of slip takes. "
+        "With friction, a step that does not converge is taken in parts, of which only the end is written. With contact "
+        "under finite kinematics a number gives the longest step, and auto leaves all of them to abut",
         "times": "ends of the load steps, rising to 1, where they are unequal; with contact under finite kinematics further "
         "ones come between them where one does not converge",
         "linear": "linear solver; auto takes multigrid (amg) for large 3D models, and petsc on several processes",

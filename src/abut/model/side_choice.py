@@ -62,10 +62,21 @@ def measured(
         first = [np.unique(of[begins]) for of in (at.facet, at.target_facet)]
     moduli = [_modulus(mesh, materials, held, surface, facets) for surface, facets in zip(surfaces, facing)]
     one, other = (
-        side(size[f], full_moments(flat_side, 0)[around, 0], opposite, modulus, not without_normal(surface).any())
+        replace(
+            side(size[f], full_moments(flat_side, 0)[around, 0], opposite, modulus, not without_normal(surface).any()),
+            tetrahedra=_tetrahedra(mesh, surface, around),
+        )
         for surface, flat_side, size, f, around, modulus in zip(surfaces, flat, sizes, first, facing, moduli)
     )
     return one, other
+
+
+def _tetrahedra(mesh: Mesh, surface: Surface, facets: NDArray[np.int64]) -> bool:
+    """Whether most of these facets are of tetrahedra of first order."""
+    own = np.zeros(mesh.starts[-1], dtype=bool)
+    for block, start, end in zip(mesh.blocks, mesh.starts, mesh.starts[1:]):
+        own[start:end] = block.kind == "tet4"
+    return bool(own[surface.cells[facets]].mean() > 0.5)
 
 
 def choices(contacts: Sequence[Contact]) -> tuple[str, ...]:

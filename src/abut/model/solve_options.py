@@ -24,7 +24,8 @@ class SolveOptions:
     Parameters
     ----------
     steps : int or str
-        Load steps of equal length; "auto" is one, and with kinematics "finite" as many as it takes.
+        Load steps of equal length; "auto" is one, with friction as many as its onset of slip takes, and with kinematics
+        "finite" as many as it takes.
     linear : str
         "auto", "direct", "amg" (multigrid) or "petsc".
     max_iterations : int

@@ -9,7 +9,7 @@ from typing import Protocol
 from abut.linear.solver import LinearSolver, NotConverged
 from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.pace import Pace
-from abut.problem.step_error import landed_in
+from abut.problem.step_error import Onset, landed_in
 from abut.solution import Iteration
 from abut.solution.state import State
 
@@ -18,7 +18,8 @@ from abut.solution.state import State
 class Control:
     """limit: of iterations in a step; observe: called with each of them; begins: called with each step's number and end;
     prepares: called before a linear solver is set up; prepared: called with its note; fallback: another solver where one
-    fails; halves: called with an attempt that failed and the end of the next one."""
+    fails; halves: called with an attempt that failed and the end of the next one; onset: of slip between two states;
+    refines: called with a step that jumps over it and the end of the next one."""
 
     limit: int
     observe: Callable[[Iteration], None]
@@ -27,6 +28,8 @@ class Control:
     prepared: Callable[[str], None]
     fallback: Callable[[int, NotConverged], LinearSolver]
     halves: Callable[[Attempt, float], None]
+    onset: Callable[[State, State], Onset]
+    refines: Callable[[Attempt, float], None]
 
 
 @dataclass(frozen=True)
@@ -64,7 +67,8 @@ class Stepper(Protocol):
 def march(stepper: Stepper, done: Sequence[State], pace: Pace, control: Control) -> Iterator[Attempt]:
     """Load step after load step. done: the converged states so far, from the start on; pace: after the last of them.
 
-    The state of a failed attempt is dropped; it is yielded only where no other follows it. Parts of a step have its number.
+    The state of a failed attempt is dropped, as is one that jumps over the onset of slip; it is yielded only where no other
+    follows it. Parts of a step have its number.
     Where a linear solver fails another one begins the step again."""
     number, told = len(done), False
     begin = Begin(number, done[-1], done[-2] if len(done) > 1 else None)
@@ -88,8 +92,12 @@ def march(stepper: Stepper, done: Sequence[State], pace: Pace, control: Control)
             pace.halve()
             control.halves(last, pace.end or time)
             continue
+        onset = control.onset(begin.before, last.state)
+        if len(attempts) == 1 and pace.refine(onset):
+            control.refines(last, pace.end or time)
+            continue
         last = replace(last, whole=pace.whole(last.time))
-        pace.take(sum(len(part.iterations) for part in attempts), landed_in(last.state).share)
+        pace.take(sum(len(part.iterations) for part in attempts), landed_in(last.state).share, onset)
         stepper.end()
         yield from (*attempts[:-1], last)
         begin, told = Begin(begin.number + last.whole, last.state, begin.before), False

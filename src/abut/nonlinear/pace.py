@@ -4,35 +4,52 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from abut.model.conditions import History
 from abut.model.step_ends import SAME as NEAR
 from abut.model.step_ends import apart, named_times
+from abut.problem.step_error import Onset
 
 FIRST = 0.1  # of the way to the next goal
 EASY, GROWTH = 6, 1.5  # iterations up to which the next step is longer, and by how much
 HARD, SHRINK = 12, 0.7  # iterations above which it is shorter
 LANDED = 0.01  # share of friction at points that touch and stick in one step, theory (G21), before it is shortened
 LEAST = 0.5  # by how much at most
+POINTS, BENT = 8, 0.01  # load steps over which contact begins to slip, and tractions that may turn in one, theory (R21)
+FINER, COARSER, SAFE = 0.125, 2.0, 0.8  # by how much the next one is shorter or longer at most, and what it aims at
+REFINED = 0.5  # what a step is to be shorter by, at least, to be taken again
 SMALLEST, LAST = 1.0 / 4096.0, 1.0 / 64.0  # of the way to the next goal; the same of steps that a user has given
 SAME = 1e-12  # times that differ by less are the same
+NO_ONSET = Onset()
+
+
+@dataclass(frozen=True)
+class Slips:
+    """That contacts may begin to slip. fits: some press before loads do anything, which a first step as short as can be
+    shows."""
+
+    fits: bool = False
 
 
 class Pace:
     """The ends of load steps. goals: times that are met, increasing, the last one is the end; longest: step, a time; legs:
     goals after which the step takes the share ``first`` of the way to the next of them; kinks: of histories, where the way
     ahead is new; given: the goals are the load steps, however many iterations they take, and what ends between is a part
-    of one; smallest: share of the way to the next goal below which a step is too short."""
+    of one; smallest: share of the way to the next goal below which a step is too short; slips: steps are as short as
+    the onset of slip asks for."""
 
     def __init__(
         self, goals: Sequence[float], longest: float = 1.0, first: float = FIRST, legs: Sequence[float] = (),
-        kinks: Sequence[float] = (), given: bool = False, smallest: float = SMALLEST,
+        kinks: Sequence[float] = (), given: bool = False, smallest: float = SMALLEST, slips: Slips | None = None,
     ) -> None:  # fmt: skip
         self._goals, self._longest, self._share, self._kinks = goals, longest, first, kinks
-        self._given, self._smallest = given, smallest
+        self._given, self._smallest, self._follows = given, smallest, slips is not None
         self._legs = [*(leg for leg in legs if leg < goals[-1] - SAME), goals[-1]]
         self.time = 0.0
-        self._length = self._fresh()
+        self._length = self._fresh()  # as iterations tell
+        self._fits = slips is not None and slips.fits
+        self._curve = SMALLEST * self._leg if self._fits else math.inf  # as the onset of slip asks for
 
     @property
     def goal(self) -> float | None:
@@ -45,14 +62,14 @@ class Pace:
         goal = self.goal
         if goal is None:
             return None
-        left = goal - self.time
-        if left <= self._length * (1.0 + SAME):
+        left, length = goal - self.time, min(self._length, self._curve)
+        if left <= length * (1.0 + SAME):
             return goal
-        return self.time + min(self._length, 0.5 * left if left < 2.0 * self._length else left)
+        return self.time + min(length, 0.5 * left if left < 2.0 * length else left)
 
     def whole(self, time: float) -> bool:
         """Whether what ends at a time is a load step, not a part of one."""
-        return not self._given or time in self._goals
+        return self._follows or not self._given or time in self._goals
 
     @property
     def turned(self) -> bool:
@@ -78,23 +95,41 @@ class Pace:
 
     def stride(self, share: float) -> None:
         """Go on with a step of a share of the way to the next goal, whatever failed."""
-        self._length = min(share * self._leg, self._longest)
+        self._length, self._curve = min(share * self._leg, self._longest), math.inf
 
-    def take(self, iterations: int, landed: float = 0.0) -> None:
-        """The step to ``end`` has converged in so many iterations; landed: share of friction that touched and stuck."""
-        end = self.end
+    def refine(self, onset: Onset) -> bool:
+        """Whether the step to ``end``, which has converged, jumps over the onset of slip: a shorter one goes before it."""
+        end, factor = self.end, _next(onset)
         assert end is not None
+        length = max(FINER, SAFE * factor) * (end - self.time)
+        if not self._follows or factor >= REFINED or length < SMALLEST * self._leg:
+            return False
+        self._curve = length
+        return True
+
+    def take(self, iterations: int, landed: float = 0.0, onset: Onset = NO_ONSET, at: float | None = None) -> None:
+        """The step to ``end`` has converged in so many iterations; landed: share of friction that touched and stuck; at:
+        where it ended, if not there."""
+        end = self.end if at is None else at
+        assert end is not None
+        first, taken, limited = self._fits and self.time == 0.0, end - self.time, self._curve < self._length
         self.time = end
         if any(abs(end - leg) < SAME for leg in self._legs):
-            self._length = self._fresh()
+            self._length, self._curve = self._fresh(), math.inf
             return
+        if self._follows:
+            free = first or onset.sticks <= 0.0
+            self._curve = math.inf if free else min(COARSER, SAFE * _next(onset)) * taken
         factor = GROWTH if iterations <= EASY else SHRINK if iterations > HARD else 1.0
         factor = 2.0 if self._given else factor
         if self._share < 1.0 and landed > 0.0:
             factor = min(factor, max(LEAST, math.sqrt(LANDED / landed)))
-        self._length = min(factor * self._length, self._longest)
+        if not limited or (factor < 1.0 and not first):
+            self._length = min(factor * (taken if limited else self._length), self._longest)
 
-    def repeat(self, time: float, iterations: int, landed: float = 0.0, strides: Sequence[float] = ()) -> None:
+    def repeat(
+        self, time: float, iterations: int, landed: float = 0.0, onset: Onset = NO_ONSET, strides: Sequence[float] = ()
+    ) -> None:
         """Take a step of an earlier run that ended at ``time``, perhaps one of ``strides``."""
         length = self._length
         for share in strides:
@@ -104,8 +139,9 @@ class Pace:
             self._length = length
         while self.end is not None and self.end > time + SAME and not self.stuck:
             self.halve()
-        self.take(iterations, landed)
-        self.time = time
+        if self._follows and self.end is not None and abs(self.end - time) > SAME:
+            self._length, self._curve = length, time - self.time
+        self.take(iterations, landed, onset, at=time)
 
     @property
     def _leg(self) -> float:
@@ -116,18 +152,29 @@ class Pace:
         return min(self._share * self._leg, self._longest)
 
 
-def given_pace(ends: Sequence[float], parts: bool = True) -> Pace:
-    """Load steps that end at given times; parts: those that fail are taken in parts, down to a sixty-fourth."""
-    return Pace(ends, first=1.0, legs=ends[:-1], given=True, smallest=LAST if parts else 1.0)
+def given_pace(ends: Sequence[float], parts: bool = True, slips: Slips | None = None) -> Pace:
+    """Load steps that end at given times; parts: those that fail are taken in parts, down to a sixty-fourth; slips: there
+    are further ones where contact begins to slip."""
+    return Pace(ends, first=1.0, legs=ends[:-1], given=True, smallest=LAST if parts else 1.0, slips=slips)
 
 
-def pace_of(steps: int | str, times: Sequence[float] | None, histories: Sequence[History]) -> Pace:
-    """From what a user says of the steps: their number is that of the longest ones, "auto" leaves them all to this; times
-    are met, each in one step if it can be."""
+def pace_of(
+    steps: int | str, times: Sequence[float] | None, histories: Sequence[History], slips: Slips | None = None
+) -> Pace:
+    """From what a user says of the steps: their number is that of the longest ones, "auto" leaves them all to this, and to
+    contacts that may slip; times are met, each in one step if it can be."""
     named, turns = named_times(histories)
     if times:
         goals = sorted([*times, *apart([time for time in named if time < times[-1]], times)])
         return Pace(goals, first=1.0, legs=goals[:-1], kinks=turns)
     if isinstance(steps, str):
-        return Pace([*named, 1.0], legs=turns, kinks=turns)
+        return Pace([*named, 1.0], legs=turns, kinks=turns, slips=slips)
     return Pace([*named, 1.0], 1.0 / steps, first=1.0, legs=turns, kinks=turns)
+
+
+def _next(onset: Onset) -> float:
+    """How much longer a step may be than the one that shows an onset of slip, theory (R21)."""
+    fresh, turned = onset.shares
+    if fresh <= 0.0 or turned <= 0.0:
+        return math.inf
+    return max(1.0 / (POINTS * fresh), math.sqrt(BENT / turned))

@@ -16,7 +16,7 @@ from abut.errors import SingularModelError
 from abut.fields import evaluate
 from abut.mesh.mesh import Mesh
 from abut.model import Model, Support
-from abut.problem.elimination import eliminate
+from abut.problem.elimination import eliminate, row_products
 from abut.problem.rigid_bodies import RigidBody, body_rows, rigid_bodies
 from abut.problem.sections import shortenings_of
 from abut.problem.turns import Turn, Turns, about
@@ -129,24 +129,13 @@ class Constraints:
     def can_move(self, points: NDArray[np.int64], directions: NDArray[np.float64]) -> NDArray[np.float64]:
         """The part of a direction (n, dim unit vectors) along which each of n points is free to move, (n, dim)."""
         dim = directions.shape[1]
-        gram = _gram(self.free, (dim * points[:, None] + np.arange(dim)).astype(np.int64))
+        gram = row_products(self.free, (dim * points[:, None] + np.arange(dim)).astype(np.int64))
         if self.orthonormal:
             return np.einsum("nab,nb->na", gram, directions)
         size, axes = np.linalg.eigh(gram)  # of the displacements that a point can take
         moves = (size > STUCK * np.maximum(size[:, -1:], 1e-300)) & (size[:, -1:] > 0.0)
         along = np.einsum("nda,nd->na", axes, directions)
         return np.einsum("nda,na->nd", axes, np.where(moves, along, 0.0))
-
-
-def _gram(free: Sparse, rows: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Products of the rows (n, dim) of each point with each other, (n, dim, dim)."""
-    count = free.indptr[rows + 1] - free.indptr[rows]
-    if free.nnz and count.max(initial=0) <= 1:  # supports along the axes
-        at = np.minimum(free.indptr[rows], free.nnz - 1)
-        column, value = np.where(count, free.indices[at], -1), np.where(count, free.data[at], 0.0)
-        return np.where(column[:, :, None] == column[:, None], value[:, :, None] * value[:, None], 0.0)
-    parts = [free[rows[:, a]] for a in range(rows.shape[1])]
-    return np.array([[np.asarray(p.multiply(q).sum(axis=1)).ravel() for q in parts] for p in parts]).transpose(2, 0, 1)
 
 
 def supports(model: Model) -> Constraints:

@@ -139,3 +139,14 @@ def _contradiction(i: int, through: Sequence[int], solved: dict[int, Expression]
     if len(others) == 1:
         return f"{others[0]} contradicts what is prescribed at its points: no displacement meets both; take one of them out"
     return f"{', '.join(others[:NAMED])}{more} contradict each other: no displacement meets all; take one of them out"
+
+
+def row_products(free: Sparse, rows: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Products of the rows (n, dim) of each point with each other, (n, dim, dim)."""
+    count = free.indptr[rows + 1] - free.indptr[rows]
+    if free.nnz and count.max(initial=0) <= 1:  # supports along the axes
+        at = np.minimum(free.indptr[rows], free.nnz - 1)
+        column, value = np.where(count, free.indices[at], -1), np.where(count, free.data[at], 0.0)
+        return np.where(column[:, :, None] == column[:, None], value[:, :, None] * value[:, None], 0.0)
+    parts = [free[rows[:, a]] for a in range(rows.shape[1])]
+    return np.array([[np.asarray(p.multiply(q).sum(axis=1)).ravel() for q in parts] for p in parts]).transpose(2, 0, 1)

@@ -1,0 +1,135 @@
+"""Load steps that abut finds follow contact that begins to slip, theory (R21): force over displacement has points."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import abut
+from abut.mesh import make
+from abut.nonlinear.pace import FINER, POINTS, SMALLEST, Pace, Slips
+from abut.problem.step_error import Onset
+
+YOUNG, LENGTH, HEIGHT, PRESSURE, FRICTION = 1e5, 20.0, 0.5, 10.0, 0.3
+FULL = FRICTION * PRESSURE * LENGTH  # force under which all of the bar slips
+REACH = FULL * LENGTH / (2.0 * YOUNG * HEIGHT)  # displacement of its end then
+
+
+def bar(kinematics: str, pull: float) -> abut.Model:
+    """A flat bar, pressed on a stiff block, then drawn along it by its end."""
+    parts = {
+        "bar": make.rectangle([0, LENGTH], [0, HEIGHT], cells=[24, 1]),
+        "block": make.rectangle([-1, LENGTH + 4], [-2, 0], cells=[29, 1]),
+    }
+    pressed, drawn = abut.Amplitude(((0, 0), (0.3, 1), (1, 1))), abut.Amplitude(((0, 0), (0.3, 0), (1, 1)))
+    return abut.Model(
+        make.join(parts),
+        plane="stress",
+        solids=[
+            abut.Solid("bar", abut.LinearElastic(YOUNG, 0)),
+            abut.Solid("block", abut.LinearElastic(100 * YOUNG, 0)),
+        ],
+        supports=[abut.Support("block.bottom", x=0, y=0), abut.Support("bar.right", x=pull, amplitude=drawn)],
+        loads=[abut.Pressure("bar.top", PRESSURE, amplitude=pressed)],
+        contacts=[abut.Contact("bar.bottom", "block.top", friction=FRICTION)],
+        kinematics=kinematics,
+    )
+
+
+def curve(solution: abut.Solution) -> tuple[np.ndarray, np.ndarray]:
+    """Times, and forces along the surface."""
+    return np.array([[step.factor, abs(step.contacts[0].force[0])] for step in solution.steps]).T
+
+
+@pytest.mark.parametrize(
+    ("kinematics", "times"), [("small", 2.0), ("small", 200.0), pytest.param("finite", 20.0, marks=pytest.mark.long)]
+)
+def test_bar_drawn_along_a_block(kinematics: str, times: float) -> None:
+    """It slips from the end on over a length s: force q s, displacement q s^2 / 2 E A, with q the friction per length (the
+    pull-out of fibres: Hutchinson and Jensen 1990, Mech. Mater. 9). Finite strains change lengths by FULL / E A = .12 %;
+    the block gives way by a hundredth of what the bar does, and the bar's end cells are of 1 / 24 of its length."""
+    solution = abut.solve(bar(kinematics, times * REACH))
+    assert solution.converged
+    time, force = curve(solution)
+    displacement = times * REACH * np.clip((time - 0.3) / 0.7, 0.0, 1.0)
+    exact = np.minimum(np.sqrt(displacement / REACH), 1.0) * FULL
+    assert np.abs(force - exact).max() < 0.015 * FULL
+    assert ((displacement > 0.0) & (force < 0.99 * FULL)).sum() >= POINTS
+    assert len(time) < 5 * POINTS
+
+
+@pytest.mark.parametrize("kinematics", ["small", pytest.param("finite", marks=pytest.mark.long)])
+def test_press_fit_pulled_out_in_one_ramp(kinematics: str) -> None:
+    """The interference is there from the outset: the first step shows the fit alone, and what the whole of it carries at
+    last is mu times the pressure."""
+    friction, pull = 0.15, 0.1
+    parts = {
+        "shaft": make.rectangle([0, 10], [0, 40], cells=[3, 16]),
+        "hub": make.rectangle([10, 20], [2, 40], cells=[3, 15]),
+    }
+    steel = abut.LinearElastic(2e5, 0.3)
+    solution = abut.solve(
+        abut.Model(
+            make.join(parts),
+            plane="axisymmetric",
+            solids=[abut.Solid(body, steel) for body in parts],
+            supports=[
+                abut.Support("shaft.left", x=0),
+                abut.Support("hub.top", y=0),
+                abut.Support("shaft.bottom", y=-pull),
+            ],
+            contacts=[abut.Contact("shaft.right", "hub.left", friction=friction, offset=-0.01)],
+            kinematics=kinematics,
+        )
+    )
+    assert solution.converged
+    time, _ = curve(solution)
+    force = np.array([step.contacts[0].force[1] for step in solution.steps])
+    full = friction * solution.contacts[0].force_by_area
+    assert time[0] < 1e-3
+    assert abs(force[0]) < 0.25 * full
+    assert abs(force[-1] - full) < 1e-6 * full if kinematics == "small" else abs(force[-1] - full) < 0.03 * full
+    assert ((time > time[0]) & (force < 0.99 * full)).sum() >= POINTS - 2  # of the limit a part slips in the fit alone
+    assert (np.diff(force) > -2e-3 * full).all()
+
+
+def test_what_slips_all_at_once_ends_in_few_steps() -> None:
+    """A short block: its points slip nearly together, which no step resolves; they do not become shorter for ever."""
+    mesh = make.join(
+        {"block": make.rectangle([0, 2], [0, 1], cells=[2, 1]), "floor": make.rectangle([-1, 4], [-1, 0], cells=[5, 1])}
+    )
+    pressed, pushed = abut.Amplitude(((0, 0), (0.5, 1), (1, 1))), abut.Amplitude(((0, 0), (0.5, 0), (1, 1)))
+    model = abut.Model(
+        mesh,
+        plane="strain",
+        solids=[abut.Solid("block", abut.LinearElastic(1e5, 0)), abut.Solid("floor", abut.LinearElastic(1e5, 0))],
+        supports=[abut.Support("floor.bottom", x=0, y=0), abut.Support("block.top", x=0.01, amplitude=pushed)],
+        loads=[abut.Pressure("block.top", 1.0, amplitude=pressed)],
+        contacts=[abut.Contact("block.bottom", "floor.top", friction=0.2)],
+    )
+    solution = abut.solve(model)
+    time, force = curve(solution)
+    assert solution.converged
+    assert abs(force[-1] - 0.4) < 1e-9
+    assert len(time) < 5 * POINTS
+
+
+def test_steps_that_jump_are_taken_again_and_no_shorter_than_the_smallest() -> None:
+    all_at_once = Onset(fresh=1.0, turned=1.0, limit=1.0)
+    pace, ends = Pace([1.0], first=1.0, slips=Slips()), [1.0]
+    while pace.refine(all_at_once):
+        assert pace.end is not None
+        ends.append(pace.end)
+    assert len(ends) == 5
+    assert ends[-1] >= SMALLEST
+    assert ends[1] == FINER
+    assert not Pace([1.0], first=1.0).refine(all_at_once)
+
+
+def test_a_step_that_all_slips_is_followed_by_one_of_any_length() -> None:
+    pace = Pace([1.0], first=1.0, slips=Slips())
+    assert pace.refine(Onset(fresh=1.0, turned=1.0, limit=1.0))
+    pace.take(5, onset=Onset(sticks=0.5, limit=1.0))
+    assert abs(pace.end - 3 * FINER) < 1e-12
+    pace.take(5, onset=Onset(limit=1.0))
+    assert pace.end == 1.0
