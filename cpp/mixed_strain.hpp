@@ -78,7 +78,7 @@ public:
     const double swell = pressure[q] * points[q].det - mean_stress[q];
     double b[STRAINS][dim];
     for (std::size_t i = 0; i < n; ++i) {
-      this->derivative(q, i, b);
+      derivative(q, i, b);
       for (int a = 0; a < dim; ++a) {
         double sum = swell * log_change[(q * n + i) * dim + a];
         for (int s = 0; s < STRAINS; ++s)
@@ -184,11 +184,28 @@ private:
     functions.project(change.data(), volume.data(), n * dim, sums.data(), projected.data());
   }
 
+  // b[s][a]: strain s at point q per displacement a of node i.
+  void derivative(std::size_t q, std::size_t i, double (&b)[STRAINS][dim]) const {
+    const double *g = &gradient[(q * n + i) * dim];
+    const auto &f = points[q].f;
+    for (int a = 0; a < dim; ++a) {
+      for (int s = 0; s < STRAINS; ++s)
+        b[s][a] = 0;
+      for (int s = 0; s < dim; ++s)
+        b[s][a] = f[a][s] * g[s];
+      b[3][a] = f[a][0] * g[1] + f[a][1] * g[0];
+      if constexpr (dim == 3)
+        b[4][a] = f[a][1] * g[2] + f[a][2] * g[1], b[5][a] = f[a][2] * g[0] + f[a][0] * g[2];
+    }
+    if constexpr (axisymmetric)
+      b[2][0] = f[2][2] * hoop[q * n + i];
+  }
+
   void respond(std::size_t q, std::size_t k, const Dense &tangent, const double *stress) {
     Node &node = bar[k];
     const double square = points[q].scale * points[q].scale;
     double b[STRAINS][dim], c[STRAINS];
-    this->derivative(q, k, b);
+    derivative(q, k, b);
     metric(q, c);
     Base::push(points[q], &gradient[(q * n + k) * dim], 0, node.push);
     for (int a = 0; a < dim; ++a) {

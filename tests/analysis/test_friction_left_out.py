@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import abut
-from abut.problem.finite import FiniteProblem
+from abut.problem.current import Current
 from models.sliding import sharp
 
 
@@ -19,6 +19,6 @@ def test_nodes_that_come_under_a_sharp_edge(monkeypatch: pytest.MonkeyPatch) -> 
     """Where slips cannot be looked at in what is covered late, as when the step does not converge with them, a plate's nodes
     carry no friction in the step in which they come under the block's edge, where the pressure peaks."""
     assert left_out(sharp(0.3, 9)) == []
-    monkeypatch.setattr(FiniteProblem, "with_late_points", lambda _, before, *rest: before)
+    monkeypatch.setattr(Current, "with_late", lambda _, past, *rest: past)
     (share,) = left_out(sharp(0.3, 9))
     assert share > 0.02  # the limit of the line

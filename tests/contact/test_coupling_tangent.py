@@ -14,9 +14,9 @@ from abut.contact.coupling import Coupling, CouplingOptions, Plan, couple, plan_
 from abut.contact.coupling_tangent import CouplingTangent, coupling_tangent
 from abut.contact.geometry import Smoothing, by_kind, facet_sizes, nodal_normals, smoothing
 from abut.contact.moving_normals import normal_pattern
+from abut.contact.slip_points import SlipNow, SlipPoints, slip_now
 from abut.errors import InputError
 from abut.mesh.surface import Surface
-from abut.problem.slip_points import SlipNow, SlipPoints, slip_now
 from abut.types import Array, Sparse
 from models.lever import couples
 from models.sheets import chain, sheet, together, turn

@@ -103,7 +103,7 @@ def test_momentum(dim: int, pressure: str, friction: float, offset: float, cell:
     problem = finite(model)
     random = state.multipliers * np.random.default_rng(1).uniform(0.5, 2.0, len(state.multipliers))
     for now in (state, replace(state, multipliers=random)):
-        pair = problem.linearise(state, now).pairs[0]
+        pair = problem.linearise(state, problem.ended(state), now).pairs[0]
         force = (pair.rows.T @ now.multipliers).reshape(-1, dim)
         x, size = pair.contactor.points, np.abs(force).sum()
         assert size > 0.1

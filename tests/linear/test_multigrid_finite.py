@@ -176,7 +176,7 @@ def test_a_body_that_turns_far() -> None:
         problem = Run.of(model, lambda *_: None, lambda *_: None, None, ()).assembled.problem
         moved = (mesh.points @ turned(angle).T - mesh.points).ravel()
         state = replace(problem.start(), time=1.0, unknowns=problem.constraints.coordinates(moved[:, None])[:, 0])
-        system = problem.linearise(problem.start(), state)
+        system = problem.linearise(problem.start(), problem.frame(problem.start()), state)
         now = bodies_now(problem, system)
         for name, motions in (("now", now.near_null), ("undeformed", bodies_now(problem, at_rest(system)).near_null)):
             levels = hierarchy(system.stiffness, now.free, motions, now.points)

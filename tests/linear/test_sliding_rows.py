@@ -31,7 +31,7 @@ Status = NDArray[np.int8]
 def linearised(model: abut.Model) -> Linearised:
     problem = assembled(model)
     start = problem.start()
-    return problem.linearise(start, start)
+    return problem.again(start, start)
 
 
 def coulomb(system: Linearised, status: Status, multipliers: Vector, gap: Vector) -> Rows:

@@ -74,9 +74,9 @@ def prepared(kind: str, problem: ContactProblem) -> Transposable:
     if kind == "condensed":
         small = condense(problem)
         assert small is not None
-        return Direct().prepare(small.linearise(start, start), None)
+        return Direct().prepare(small.linearise(start, small.frame(start), start), None)
     return linear_solver("amg" if kind == "multigrid" else "direct", problem, None).prepare(
-        problem.linearise(start, start), None
+        problem.again(start, start), None
     )
 
 

@@ -46,7 +46,7 @@ def at_the_end(problem: ContactProblem, inside: NDArray[np.bool_] | None = None)
     (``abut.solution.Saved.inside``)."""
     own = problem.with_ordinary(inside) if inside is not None and inside.any() else problem
     state = replace(own.start(), time=1.0)
-    return own.linearise(state, state)
+    return own.linearise(state, own.frame(state), state)
 
 
 def programme(system: Linearised) -> Programme:

@@ -13,7 +13,9 @@ import abut
 from abut.analysis.run import Run
 from abut.mesh import make
 from abut.mesh.mesh import Mesh
-from abut.problem.finite import POINTS, FiniteProblem
+from abut.problem.current import Current
+from abut.problem.frame import Frame
+from abut.problem.problem import ContactProblem
 from abut.solution.state import State
 
 SOFT = abut.LinearElastic(young=100.0, poisson=0.3)
@@ -52,43 +54,63 @@ def bent(mesh: Mesh, move: Callable[[NDArray[np.float64]], NDArray[np.float64]])
     return replace(mesh, points=move(mesh.points))
 
 
-def finite(model: abut.Model) -> FiniteProblem:
+def finite(model: abut.Model) -> ContactProblem:
     """The problem of a model as a run sets it up."""
     problem = Run.of(model, lambda *_: None, lambda *_: None, None, ()).assembled.problem
-    assert isinstance(problem, FiniteProblem)
+    assert problem.kinematics is not None
     return problem
 
 
-def forgetful(problem: FiniteProblem, size: float) -> State:
+def current(problem: ContactProblem) -> Current:
+    """How its only pair is looked at."""
+    (kind,) = problem.kinematics or ()
+    assert isinstance(kind, Current)
+    return kind
+
+
+def forgetful(problem: ContactProblem, size: float) -> State:
     """The start, as if nothing had been opposite the contactors: all slips count at points of another state, random
     displacements of that size from it."""
-    start = problem.start()
-    none = {name: values[:0] for name, values in start.history.of(POINTS).items()}
-    before = replace(start, history=start.history.with_term(POINTS, none))
-    there = replace(before, unknowns=size * np.random.default_rng(5).standard_normal(problem.n_free))
-    return problem.with_late_points(before, problem.displacement(there), np.ones(len(start.status), dtype=bool))
+    start, contacts = problem.start(), {}
+    there = replace(start, unknowns=size * np.random.default_rng(5).standard_normal(problem.n_free))
+    for kind in problem.kinematics or ():
+        name, ways = kind.pair.contact.name, (problem.displacement(start), problem.displacement(there))
+        known, every = start.history.contacts[name], np.ones(len(kind.pair), dtype=bool)
+        assert isinstance(kind, Current)
+        assert known.past is not None
+        none = replace(known.past, points=known.past.points.on(np.zeros(0, np.int64)))
+        contacts[name] = replace(known, past=kind.with_late(none, *ways, every))
+    return replace(start, history=replace(start.history, contacts=contacts))
 
 
-def tangent_errors(problem: FiniteProblem, size: float, start: State | None = None) -> tuple[float, float]:
+def tangent_errors(
+    problem: ContactProblem, size: float, start: State | None = None, frame: Frame | None = None
+) -> tuple[float, float]:
     """Of the derivatives of balance and of gaps (slips) near random displacements of that size. start: what the step begins
-    from, the problem's own where left out."""
+    from, the problem's own where left out; frame: of the step, that in which ``start`` ended."""
     rng = np.random.default_rng(3)
     before, n = start or problem.start(), problem.operator.shape[0]
     at = replace(
         before, time=0.7, unknowns=size * rng.standard_normal(problem.n_free), multipliers=rng.uniform(0.0, 5.0, n)
     )
-    return tangent_errors_at(problem, before, at, rng.standard_normal(problem.n_free), 1e-6)
+    return tangent_errors_at(problem, before, at, rng.standard_normal(problem.n_free), 1e-6, frame)
 
 
 def tangent_errors_at(
-    problem: FiniteProblem, before: State, at: State, way: NDArray[np.float64], step: float
+    problem: ContactProblem,
+    before: State,
+    at: State,
+    way: NDArray[np.float64],
+    step: float,
+    frame: Frame | None = None,
 ) -> tuple[float, float]:
     """The same near a state, against central differences of a step along a way (n_free,), relative."""
-    system = problem.linearise(before, at)
+    frame = problem.ended(before) if frame is None else frame
+    system = problem.linearise(before, frame, at)
 
     def there(step: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         state = replace(at, unknowns=at.unknowns + step * way)
-        near = problem.linearise(before, state)
+        near = problem.linearise(before, frame, state)
         return near.unbalanced(state), near.gap(state)
 
     (force, gap), (force_back, gap_back) = there(step), there(-step)

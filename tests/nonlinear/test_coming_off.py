@@ -22,11 +22,13 @@ def test_a_guess_that_comes_off_does_not_let_go() -> None:
     start, most = problem.start(), 25
 
     def solved(before: State, guess: State | None, time: float) -> tuple[State, list[float]]:
-        step = Step(problem, before, Direct(), Increment(1, before.largest), most, lambda _: None)
+        step = Step(
+            problem, before, problem.ended(before), Direct(), Increment(1, before.largest), most, lambda _: None
+        )
         found = solve_finite(step, guess, time)
         assert found.converged
         assert found.system is not None
-        end = problem.accepted(before, replace(found.state, time=time), found.system)
+        end = problem.accepted(before, step.frame, replace(found.state, time=time), found.system)
         return end, [row.penetration for row in found.iterations]
 
     pressed, _ = solved(start, None, 0.2)

@@ -13,8 +13,9 @@ import abut
 from abut.contact.laws import LawResult, LawState
 from abut.errors import InputError
 from abut.mesh import make
-from abut.problem.current import Place
-from models.sliding import SOFT, arched, bent, finite, pressed_in_space, tangent_errors, turned
+from abut.problem.frame import PairFrame
+from abut.problem.kinematics import Placed
+from models.sliding import SOFT, arched, bent, current, finite, pressed_in_space, tangent_errors, turned
 
 Array = NDArray[np.float64]
 TINY = 1e-7  # of the blocks' height, by which they are pressed together: what is of second order in it is left out
@@ -85,7 +86,7 @@ def test_tangent_is_the_derivative(given: dict[str, Any], pressure: str, edge: b
     """As without: weights of what is covered, by which means are divided, change with the surfaces."""
     model = with_contact(arched(0.0), pressure=pressure, **given)
     problem = finite(over_the_edge(model) if edge else model)
-    assert (problem.moving[0].adjusted is not None) == ("adjust" in given)
+    assert (current(problem).adjusted is not None) == ("adjust" in given)
     assert max(tangent_errors(problem, 3e-3)) < 1e-8
 
 
@@ -122,7 +123,7 @@ def test_tiny_loads_give_what_small_displacements_do(cell: str, given: dict[str,
 def test_adjusted_gaps() -> None:
     """What is larger than ``adjust`` stays: of a wedge from 0.006 to 0.034 the part that is less than 0.021 is closed."""
     model = apart(0.0, 0.02, "quad4", adjust=0.021)
-    moving = finite(model).moving[0]
+    moving = current(finite(model))
     nodes = moving.pair.space.node
     gap = model.mesh.points[nodes, 1] - 1.0
     assert moving.adjusted is not None
@@ -139,8 +140,8 @@ def test_adjusted_gaps_turn_with_the_bodies() -> None:
     points = model.mesh.points
     there = (points @ turned(np.deg2rad(70.0)).T + [3.0, -2.0] - points).ravel()
     for adjust, least, most in ((0.1, 0.0, 1e-14), (0.0, 0.05, 0.1)):
-        moving = finite(with_contact(model, adjust=adjust)).moving[0]
-        now = moving.at(Place(there, there, None, 0.0), np.zeros(len(moving.pair)))
+        moving = current(finite(with_contact(model, adjust=adjust)))
+        now = moving.at(PairFrame(), Placed(there, np.zeros(n := len(moving.pair)), np.zeros(n, bool), 0.0), there)
         mean = np.abs(now.gap / now.pair.space.weight)
         assert least <= mean.min()
         assert mean.max() <= most

@@ -12,14 +12,14 @@ import pytest
 import abut
 from abut.contact.coupling import CouplingOptions, couple
 from abut.contact.moving_normals import normal_pattern
+from abut.contact.slip_points import SlipPoints, slip_now
 from abut.errors import InputError
 from abut.linear.choice import Direct
 from abut.mesh import make
 from abut.nonlinear.finite_laws import Asked, laws_of
 from abut.nonlinear.iteration import advance
 from abut.nonlinear.large_steps import extrapolated
-from abut.problem.current import Place
-from abut.problem.slip_points import SlipPoints, slip_now
+from abut.problem.frame import PairFrame
 from abut.solution import Solution
 from abut.solution.state import CLOSED, OPEN, State
 from models.sliding import arched, finite, forgetful, sharp, tangent_errors, turned
@@ -49,7 +49,7 @@ def test_tangent_where_slip_counts_at_late_points(pressure: str) -> None:
     model = arched(0.3)
     problem = finite(replace(model, contacts=[replace(model.contacts[0], pressure=pressure)]))
     before = forgetful(problem, 5e-3)
-    system = problem.linearise(before, before)
+    system = problem.again(before, before)
     assert system.forgotten is not None
     assert not system.forgotten.any()
     assert max(tangent_errors(problem, 5e-3, before)) < 1e-8
@@ -60,10 +60,11 @@ def test_prescribed_displacements_ahead() -> None:
     problem = finite(patch(0.4))  # it prescribes the ends of the interface, too
     pressed = np.random.default_rng(1).uniform(0.0, 50.0, problem.operator.shape[0])
     before = replace(problem.start(), multipliers=pressed)
+    frame = problem.ended(before)
 
     def error(step: float) -> float:
         later = replace(before, time=step)
-        ahead, there = problem.ahead(before, later.time), problem.linearise(before, later)
+        ahead, there = problem.ahead(before, frame, later.time), problem.linearise(before, frame, later)
         force, gap = ahead.unbalanced(before) - there.unbalanced(later), ahead.gap(before) - there.gap(later)
         return float(np.abs(force).max() + 100.0 * np.abs(gap).max())
 
@@ -77,9 +78,8 @@ def test_a_long_way_into_the_target_is_seen() -> None:
     moved = np.zeros_like(model.mesh.points)
     moved[model.mesh.nodes_of("upper.bottom"), 1] = -0.95
     trial = replace(before, unknowns=problem.constraints.free.T @ moved.ravel(), time=0.1)
-    own = problem.moving[0].at(
-        Place(problem.displacement(trial), problem.displacement(before), None, 0.0), before.multipliers
-    )
+    (kind,) = problem.kinematics or ()
+    own = kind.at(PairFrame(), problem.placed(trial)[0], problem.displacement(before))
     middle = own.gap / problem.pairs[0].weight
     assert middle.min() < -0.8
 
@@ -107,7 +107,7 @@ def test_momentum() -> None:
     tractions' is sum t_k G_k, the pressures' is zero at every point."""
     problem = finite(arched(0.3))
     _, state, _ = last_state(arched(0.3))
-    system = problem.linearise(state, state)
+    system = problem.again(state, state)
     force = (system.pairs[0].rows.T @ state.multipliers).reshape(-1, 2)
     x = system.pairs[0].contactor.points
     size = np.abs(force).sum()
@@ -254,7 +254,7 @@ def test_no_past_no_traction() -> None:
     pair = problem.pairs[0]
     state = before.with_status(np.full(len(pair), CLOSED))
     state = replace(state, multipliers=np.where(np.arange(len(pair)) < len(pair.space), 2.0, 0.4))
-    system = problem.linearise(before, state)
+    system = problem.linearise(before, problem.ended(before), state)
     assert system.forgotten is not None
     assert not system.forgotten.any()
     mask = np.arange(len(pair)) == pair.tangential.start + 2

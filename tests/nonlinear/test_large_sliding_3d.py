@@ -10,7 +10,7 @@ import pytest
 import abut
 from abut.contact.coupling import CouplingOptions
 from abut.contact.moving_normals import normal_pattern
-from abut.problem.slip_points import SlipPoints, slip_now
+from abut.contact.slip_points import SlipPoints, slip_now
 from abut.problem.turns import rotation
 from abut.solution.state import State
 from models.sliding import finite, forgetful, pressed_in_space, tangent_errors
@@ -41,7 +41,7 @@ def test_sliding() -> None:
         first = next(i for i, value in enumerate(left) if value < 1e-3)
         assert min(left[first : first + 3]) < 1e-8
     problem, state = finite(model), states[-1]
-    system = problem.linearise(state, state)
+    system = problem.again(state, state)
     pair = system.pairs[0]
     slips = state.slipping[pair.normal]
     traction = pair.tangential_traction(state.multipliers)[slips]

@@ -53,7 +53,7 @@ def test_off_the_edge_and_back(dim: int, friction: float, aside: float) -> None:
     problem = finite(model)
 
     def force(state: State) -> float:
-        pair = problem.linearise(state, state).pairs[0]
+        pair = problem.again(state, state).pairs[0]
         return float(state.multipliers[pair.normal] @ pair.space.weight)
 
     times, forces = np.array([state.time for state in states]), np.array([force(state) for state in states])
@@ -64,7 +64,7 @@ def test_off_the_edge_and_back(dim: int, friction: float, aside: float) -> None:
     assert far.sum() >= 2
     assert np.abs(states[int(np.flatnonzero(far)[0])].multipliers).max() == 0.0
     if friction:
-        pair = problem.linearise(states[-1], states[-1]).pairs[0]
+        pair = problem.again(states[-1], states[-1]).pairs[0]
         along = np.linalg.norm(pair.tangential_traction(states[-1].multipliers), axis=1)
         assert (along <= friction * states[-1].multipliers[pair.normal] * (1.0 + 1e-8) + 1e-10).all()
         assert along.max() > 0.0

@@ -22,7 +22,7 @@ def touching(apart: float) -> tuple[Linearised, State]:
     """Points 1 and 2 of a contactor closed, gaps of all of them ``apart`` facets."""
     problem = finite(arched(0.0))
     start = problem.start()
-    system = problem.linearise(start, start)
+    system = problem.again(start, start)
     (pair,) = system.pairs
     closed = np.isin(np.arange(len(start.status)), (1, 2))
     return replace(system, offset=apart * pair.size * pair.weight), start.with_closed(closed)
@@ -62,7 +62,7 @@ def test_without_what_pulls() -> None:
     """Only where contact alone holds a body, and never all of a contact."""
     problem = finite(pin_in_cradle(0.2))
     start = problem.start()
-    system = problem.linearise(start, start)
+    system = problem.again(start, start)
     (pair,) = system.pairs
     at = np.flatnonzero(start.closed[pair.normal])
     assert len(at) == 3

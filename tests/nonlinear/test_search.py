@@ -114,7 +114,9 @@ class Ready:
     solver: Prepared
 
     def ended(self, found: Found) -> State:
-        return self.own.expand(self.whole.start(), found.state, found.laws, self.solver.system)[0]
+        return self.own.expand(
+            start := self.whole.start(), self.own.frame(start), found.state, found.laws, self.solver.system
+        )[0]
 
 
 def prepared(model: abut.Model) -> Ready:
@@ -122,7 +124,7 @@ def prepared(model: abut.Model) -> Ready:
     whole, solver = assembled(model), Direct()
     own = solver.condensed(whole)
     first = replace(own.start(), time=1.0)
-    return Ready(whole, own, first, solver.prepare(own.linearise(first, first), None))
+    return Ready(whole, own, first, solver.prepare(own.linearise(first, own.frame(first), first), None))
 
 
 def searched(ready: Ready) -> tuple[State, int]:
@@ -141,7 +143,8 @@ def peeled(ready: Ready) -> State:
     for number in range(1, LONG + 1):
         solved = solve_set(ready.solver, state, Increment(1), tied, number, DEFAULT.accuracy.rough)
         if not solved.changed.any():
-            return ready.own.expand(ready.whole.start(), solved.state, active_laws, ready.solver.system)[0]
+            start, frame = ready.whole.start(), ready.own.frame(ready.whole.start())
+            return ready.own.expand(start, frame, solved.state, active_laws, ready.solver.system)[0]
         state = solved.state.with_closed(solved.wanted)
     raise AssertionError("not converged")
 

@@ -10,12 +10,11 @@ import pytest
 import abut
 from abut.contact.self_contact import RANK
 from abut.contact.sides import Names, moving_sides
-from abut.problem.current import Current
 from abut.solution import Solution
 from models.certificate import faceted
 from models.clamps import DEPTH, NAMED, WHOLE, balanced, clamp, tube
 from models.folding import accordion
-from models.sliding import finite
+from models.sliding import current, finite
 
 # Two or three facets from the edge of contact to its middle: up to 40 % off between nodes. A single layer of cells of first
 # order bends: stresses of it are worth little.
@@ -114,9 +113,8 @@ def test_side_faces_do_not_press_on_each_other() -> None:
     """Where the walls of a tube one cell deep overlap between nodes, its front sees its back through the body: no contact,
     and no contact of a front with the inside, which it sees edge-on."""
     solution = abut.solve(tube("hex8"))
-    current = finite(solution.model).moving[0]
-    assert isinstance(current, Current)
-    samples = current.shown(solution.displacement.ravel()).gap_samples
+    kind = current(finite(solution.model))
+    samples = kind.shown(solution.displacement.ravel()).gap_samples
     assert samples is not None
     assert (samples.gap < -1e-3).any()
     assert samples.gap.min() > -0.5 * DEPTH

@@ -10,6 +10,7 @@ import pytest
 
 import abut
 from abut.job.load import load_job
+from abut.problem.frame import Frame
 from abut.solution.state import State
 from models.overhanging import crossed, pressed
 from models.sliding import finite, tangent_errors
@@ -74,14 +75,13 @@ def test_derivatives_of_functions_that_follow(cell: str, friction: float, space:
     model = crossed(cell, friction)
     problem = finite(replace(model, contacts=[replace(model.contacts[0], pressure=space)]))
     before = problem.start()
-    following = problem.following(before, before)
-    assert following
-    begin = problem.led(before, following)
-    assert max(tangent_errors(problem, 2e-3, begin)) < (1e-8 if cell == "quad4" else 1e-7)
-    (to,) = following.values()
+    frame = problem.frame(before)
+    begin, to = problem.handed(before, problem.ended(before), frame), frame.pairs[0].following
+    assert to is not None
+    assert max(tangent_errors(problem, 2e-3, begin, frame)) < (1e-8 if cell == "quad4" else 1e-7)
     pair = problem.pairs[0]
     mute = pair.of_functions(to != np.arange(len(to)))
-    assert not np.abs(problem.linearise(begin, begin).pushing[mute]).sum()
+    assert not np.abs(problem.linearise(begin, frame, begin).pushing[mute]).sum()
 
 
 @pytest.mark.parametrize(("offset", "overlaps"), [(-1e-3, True), (1e-3, False)])
@@ -92,10 +92,10 @@ def test_functions_follow_where_a_guess_overlaps(offset: float, overlaps: bool) 
     problem = finite(replace(model, contacts=[replace(model.contacts[0], offset=offset)]))
     before = problem.start()
     none, all_of_them = (before.with_closed(np.full(len(before.status), closed)) for closed in (False, True))
-    (closed,) = problem.following(none, all_of_them).values()
-    found = problem.following(none, none)
-    assert bool(found) == overlaps
-    assert all(np.array_equal(to, closed) for to in found.values())
+    closed, found = (problem.frame(none, guess).pairs[0].following for guess in (all_of_them, none))
+    assert closed is not None
+    assert (found is not None) == overlaps
+    assert found is None or np.array_equal(found, closed)
 
 
 def test_pressures_are_handed_over() -> None:
@@ -103,19 +103,23 @@ def test_pressures_are_handed_over() -> None:
     the forces do not change."""
     problem = finite(crossed("hex8", 0.3))
     before = problem.start()
-    there = problem.following(before, before)
+    outset, there = problem.ended(before), problem.frame(before)
     rng = np.random.default_rng(1)
-    led = problem.led(replace(before, multipliers=rng.uniform(1.0, 2.0, len(before.multipliers))), there)
-    back = problem.led(led, {name: np.arange(len(to)) for name, to in there.items()})
+    pressed = replace(before, multipliers=rng.uniform(1.0, 2.0, len(before.multipliers)))
+    led = problem.handed(pressed, outset, there)
+    (part,) = there.pairs
+    assert part.following is not None
+    own = Frame((replace(part, following=np.arange(len(part.following))),))
+    back = problem.handed(led, there, own)
 
-    def force(state: State) -> np.ndarray:
-        system = problem.linearise(state, state)
+    def force(state: State, frame: Frame) -> np.ndarray:
+        system = problem.linearise(state, frame, state)
         assert system.pushing is not None
         return system.pushing.T @ state.multipliers
 
     assert (led.multipliers == 0.0).any()
     assert (back.multipliers != 0.0).all()
-    assert force(back) == pytest.approx(force(led), abs=1e-12 * np.abs(force(led)).max())
+    assert force(back, own) == pytest.approx(force(led, there), abs=1e-12 * np.abs(force(led, there)).max())
 
 
 @pytest.mark.parametrize("cell", ["quad4", "quad8"])

@@ -61,7 +61,7 @@ def test_a_pin_that_is_lifted() -> None:
     """In its cradle under its weight, and under a force as large upwards."""
     problem = finite(pin_in_cradle(0.2))
     rest = problem.start()
-    pressed = problem.ahead(rest, 1.0)
+    pressed = problem.ahead(rest, problem.ended(rest), 1.0)
     assert lifted(pressed, rest) == ""
     assert lifted(replace(pressed, forces=-pressed.forces), rest) == (
         "the loads carry it off what it touches: body 'pin' is free to translate along y; "

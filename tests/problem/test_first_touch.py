@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from abut.contact.coupling import CouplingOptions
 from abut.contact.geometry import nodal_normals
+from abut.contact.slip_points import SlipPoints
 from abut.mesh import make
 from abut.mesh.mesh import Mesh
 from abut.problem.first_touch import Sides, apart
-from abut.problem.slip_points import SlipPoints
 from abut.problem.turns import rotation
 
 RADIUS, ANGLE = 2.0, 0.4

@@ -62,16 +62,17 @@ def test_tangent_of_the_whole_problem(dim: int, given: dict) -> None:
         given = given | {"reference": (2.5, 0.2, -0.4)[:dim]}
     problem, h = problem_of(gripped(dim, **given)), 1e-6
     before = problem.start()
+    frame = problem.frame(before)
     rng = np.random.default_rng(6)
     at = 0.15 * rng.standard_normal(problem.n_free)
     along = rng.standard_normal(problem.n_free)
 
     def force(unknowns: np.ndarray) -> np.ndarray:
         state = replace(before, time=0.8, unknowns=unknowns)
-        return problem.linearise(before, state).unbalanced(state)
+        return problem.linearise(before, frame, state).unbalanced(state)
 
     difference = (force(at + h * along) - force(at - h * along)) / (2 * h)
-    told = problem.linearise(before, replace(before, time=0.8, unknowns=at)).stiffness @ along
+    told = problem.linearise(before, frame, replace(before, time=0.8, unknowns=at)).stiffness @ along
     assert np.abs(told - difference).max() < 1e-7 * np.abs(difference).max()
 
 

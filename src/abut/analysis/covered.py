@@ -19,32 +19,32 @@ from abut.problem.adjusted_gaps import BARELY
 from abut.problem.balance import Balance
 from abut.problem.contact_pairs import planes_of
 from abut.problem.current import Current
-from abut.problem.finite import FIT, FiniteProblem
 from abut.problem.pair import Pair, Slip
-from abut.problem.problem import CONTACTS
+from abut.problem.problem import ContactProblem
 from abut.solution.state import State
 
 Array = NDArray[np.float64]
 
 
 def covered(
-    problem: FiniteProblem, balance: Balance, state: State, here: Array
+    problem: ContactProblem, balance: Balance, state: State, here: Array
 ) -> tuple[Balance, State, NDArray[np.bool_]]:
     """A problem at the end of a step and the state there, at displacements ``here`` (dim n_points,), without multipliers
     that nothing is opposite to, and which are left, (n,); weights are those of the part that is covered, planes of
     symmetry those where the contactor ends now."""
-    pairs, keeps, gaps, slips = [], [], [], state.history.of(CONTACTS)
-    for pair, kind, whole, gap in zip(balance.pairs, problem.moving, problem.pairs, balance.split(balance.gap)):
-        keep = np.ones(len(pair), dtype=bool)
-        if kind is not None:
+    pairs, keeps, gaps, contacts = [], [], [], {}
+    parts = problem.kinematics or (), problem.pairs, balance.split(balance.gap)
+    for pair, kind, whole, gap in zip(balance.pairs, *parts):
+        keep, name = np.ones(len(pair), dtype=bool), pair.contact.name
+        known = state.history.contact(name)
+        if isinstance(kind, Current):
             undeformed = whole.weight[whole.normal]
             seen = kind.shown(here, points=pair.frictional and touches_itself(pair))
             # a step sees targets that have come from farther away: open gaps are shown as if the bodies had been at rest
             under = pair.space.transfer.T @ seen.weight >= BARELY * undeformed
             keep = pair.of_functions(under if under.any() else np.ones_like(under))
-            fit = state.history.of(FIT).get(pair.contact.name)
             gap = np.concatenate(
-                [kind.gaps(pair.space, seen, problem.added(pair, state.time), fit), gap[pair.tangential]]
+                [kind.gaps(pair.space, seen, problem.added(pair, state.time), known.fit), gap[pair.tangential]]
             )
             planes = _planes_now(problem, kind, pair)
             pair = replace(pair, coupling=replace(seen, points=None), slip=_seen_slip(pair, seen), planes=planes)
@@ -52,23 +52,21 @@ def covered(
         pairs.append(pair)
         keeps.append(keep)
         gaps.append(gap[keep])
+        contacts[name] = replace(known, slips=None if known.slips is None else known.slips[keep])
     keep = np.concatenate([np.zeros(0, bool), *keeps])
-    slips = {
-        p.contact.name: slips[p.contact.name][chosen] for p, chosen in zip(pairs, keeps) if p.contact.name in slips
-    }
     smaller = replace(balance, pairs=pairs, gap=np.concatenate([np.zeros(0), *gaps]))
-    history = state.history.with_term(CONTACTS, slips)
+    history = replace(state.history, contacts=contacts)
     kept = replace(state, multipliers=state.multipliers[keep], status=state.status[keep], history=history)
     return smaller, kept, keep
 
 
-def _planes_now(problem: FiniteProblem, kind: Current, pair: Pair) -> Planes:
+def _planes_now(problem: ContactProblem, kind: Current, pair: Pair) -> Planes:
     """Of symmetry, at which a contactor ends now."""
     border = rim_of_sides(pair.contactor)
     return planes_of(problem.model.mesh, pair.contactor, border, kind.goes_on(pair, border), problem.constraints)
 
 
-def whole_supports(problem: FiniteProblem, pairs: Sequence[Pair], keep: NDArray[np.bool_]) -> list[Array | None]:
+def whole_supports(problem: ContactProblem, pairs: Sequence[Pair], keep: NDArray[np.bool_]) -> list[Array | None]:
     """int H_k over all of the contactor where it is now, (n_functions,) of each pair, without what follows it; None of ties.
     pairs: as from ``covered``; keep: (n,) multipliers of the problem that are left."""
     return [

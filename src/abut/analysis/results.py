@@ -34,17 +34,16 @@ from abut.nonlinear.settings import DEFAULT
 from abut.problem.assembly import Assembled
 from abut.problem.balance import Balance
 from abut.problem.constraints import Constraints
-from abut.problem.finite import FiniteProblem
 from abut.problem.follower_loads import FollowerLoads
 from abut.problem.pair import Pair
 from abut.problem.preloads import LockedPreloads
-from abut.problem.problem import CONTACTS, ContactProblem
+from abut.problem.problem import ContactProblem
 from abut.problem.rigid_bodies import RigidBody
 from abut.problem.scales import scales
 from abut.problem.sections import preload_forces
 from abut.problem.springs import Springs
 from abut.problem.stabilising import drag_of, is_dragged
-from abut.problem.step_error import LANDED, landed_in
+from abut.problem.step_error import landed_in
 from abut.problem.terms import Motion
 from abut.solution import ContactResult, Energy, Flips, Flow, PreloadResult, RigidResult, Step
 from abut.solution.state import State
@@ -156,9 +155,9 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
     turned = not problem.model.finite and len(problem.springs) > 0  # small turns would strain it
     if turned:
         displacement = problem.springs.without_motions(displacement)
-    balance = attempt.balance or Balance.of(problem.linearise(state, state), state)
+    balance = attempt.balance or Balance.of(problem.again(state, state), state)
     supports: Sequence[NDArray[np.float64] | None] = [None] * len(balance.pairs)
-    if isinstance(problem, FiniteProblem):
+    if problem.kinematics is not None:
         balance, state, kept = covered(problem, balance, state, displacement)
         cycling, supports = cycling[kept], whole_supports(problem, balance.pairs, kept)
     pressures = balance.split(state.multipliers)
@@ -202,8 +201,7 @@ def _energy(
     )  # fmt: skip
     if not isinstance(acted, Acting):
         acted = Acting.none(constraints.prescribed @ weights(end.problem.model.histories, 0.0), balance)
-    history = end.state.history.of(CONTACTS)
-    slips = [history[pair.contact.name] if pair.frictional else None for pair in balance.pairs]
+    slips = [end.state.history.contact(pair.contact.name).slips for pair in balance.pairs]
     return now, energy(balance, acted, now, slips, contacts, _largest_size(steps))
 
 
@@ -242,7 +240,7 @@ def _turn(model: Model, displacement: NDArray[np.float64]) -> float:
 
 def _landed(state: State) -> tuple[float, float] | None:
     """As in ``Landed``; None without friction at large sliding."""
-    if not state.history.of(LANDED):
+    if all(contact.landed is None for contact in state.history.contacts.values()):
         return None
     found = landed_in(state)
     return found.unsure, found.limit
@@ -315,10 +313,9 @@ def _contacts(
             )
         )
     residual = attempt.iterations[-1].contact_residual
-    slips = end.state.history.of(CONTACTS)
     found = zip(
         balance.pairs, end.pressures, balance.split(balance.gap), balance.split(end.state.status),
-        [slips.get(pair.contact.name) for pair in balance.pairs],
+        [end.state.history.contact(pair.contact.name).slips for pair in balance.pairs],
     )  # fmt: skip
     earlier = before[-1].contacts if before else [None] * len(balance.pairs)
     return tuple(

@@ -30,7 +30,6 @@ from abut.nonlinear.stepping import SmallSteps
 from abut.probing import Place, find_places, read
 from abut.problem.assembly import Assembled, assemble, prescribed
 from abut.problem.clock import Clock
-from abut.problem.finite import FiniteProblem
 from abut.problem.restraint import require_balance
 from abut.problem.stabilising import is_dragged
 from abut.problem.step_error import Onset, landed_in, onset
@@ -176,7 +175,7 @@ class Run:
             share, begun = landed_in(saved.state).share, slip(before, saved.state)
             pace.repeat(saved.state.time, len(saved.iterations), share, begun, tried)
         stepper: Stepper
-        if isinstance(problem, FiniteProblem):
+        if problem.kinematics is not None:
             stepper = LargeSteps(problem, self.solver, control)
         else:
             stepper = SmallSteps(problem, first, self.solver, control)
@@ -264,7 +263,7 @@ class Run:
 
     def _fallback(self, number: int, reason: NotConverged) -> LinearSolver:
         direct = linear_solver("direct", self.assembled.problem, self.team)
-        if isinstance(self.assembled.problem, FiniteProblem):
+        if self.model.finite:
             self.told.note(f"step {number}: {reason}: the direct solver takes this step")
             return direct
         self.told.note(f"step {number}: {reason}: going on with the direct solver")

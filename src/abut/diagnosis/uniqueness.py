@@ -14,8 +14,9 @@ from abut.errors import SingularModelError
 from abut.linear import direct
 from abut.model import Model
 from abut.problem.backend import serial
-from abut.problem.constraints import Constraints, resistance_of_supports
+from abut.problem.constraints import Constraints
 from abut.problem.pair import Pair
+from abut.problem.restraint import resistance_of_supports
 from abut.problem.rigid_modes import free_motions, resistance_of_rows, rigid_modes
 
 MOST = {2: 30_000, 3: 8_000}  # free displacements by dimension, and multipliers, up to which this costs a few seconds

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from abut.errors import SingularModelError
 from abut.linear import direct
 from abut.linear.dense import cholesky, dense
+from abut.problem.frame import Frame
 from abut.problem.linearised import Linearised
 from abut.problem.pair import Pair
 from abut.problem.problem import ContactProblem, Laws, Problem
@@ -44,9 +45,13 @@ class CondensedProblem:
         """As in ``Problem``."""
         return self.restrict(self.whole.start())
 
-    def linearise(self, before: State, now: State) -> Linearised:
+    def frame(self, before: State, guess: State | None = None) -> Frame:
+        """As in ``Problem``."""
+        return self.whole.frame(before, guess)
+
+    def linearise(self, before: State, frame: Frame, now: State) -> Linearised:
         """As in ``Problem``; before: in all free displacements; the unknowns of ``now`` do not matter."""
-        full = self.whole.linearise(before, now)
+        full = self.whole.linearise(before, frame, now)
         n = len(full.load)
         load = self.factorization.forward(np.concatenate([full.load, np.zeros(len(full.offset))]))
         return Linearised(
@@ -54,9 +59,9 @@ class CondensedProblem:
             self.motions, full.restraint, full.load, full.unit, self.compliance,
         )  # fmt: skip
 
-    def accepted(self, before: State, now: State, system: Linearised) -> State:
+    def accepted(self, before: State, frame: Frame, now: State, system: Linearised) -> State:
         """As in ``Problem``."""
-        return self.whole.accepted(before, now, system)
+        return self.whole.accepted(before, frame, now, system)
 
     def again(self, before: State, state: State) -> Linearised:
         """As in ``Problem``."""
@@ -73,10 +78,12 @@ class CondensedProblem:
             return self
         return condense(other) or other
 
-    def expand(self, before: State, state: State, laws: Laws, system: Linearised) -> tuple[State, Linearised]:
+    def expand(
+        self, before: State, frame: Frame, state: State, laws: Laws, system: Linearised
+    ) -> tuple[State, Linearised]:
         """As in ``Problem``. Eliminated stiff parts under soft ones lose digits by cancellation: the equations of the whole
         problem are met anew by refinement."""
-        near, whole = system, self.whole.linearise(before, state)
+        near, whole = system, self.whole.linearise(before, frame, state)
         solver = dense(near)
         n = len(whole.load)
         inner = self.factorization.forward(np.concatenate([whole.load, np.zeros(len(whole))]))

@@ -14,7 +14,7 @@ from abut.contact.smooth_friction import SmoothCoulomb
 from abut.nonlinear.friction_newton import friction_laws, next_status
 from abut.nonlinear.iteration import Increment
 from abut.nonlinear.settings import NOTHING
-from abut.problem.finite import bare
+from abut.problem.current import bare
 from abut.problem.laws import LawRows, at_multipliers
 from abut.problem.linearised import Linearised
 from abut.problem.pair import Pair

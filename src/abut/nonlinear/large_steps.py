@@ -16,7 +16,7 @@ from abut.nonlinear.one_step import Setting
 from abut.nonlinear.pace import Pace
 from abut.nonlinear.stabilised import led_on, stabilised
 from abut.nonlinear.unsettled import gives_way
-from abut.problem.finite import FiniteProblem
+from abut.problem.problem import ContactProblem
 from abut.problem.stabilising import drag_of, is_dragged
 from abut.solution.state import State
 
@@ -24,7 +24,7 @@ from abut.solution.state import State
 class LargeSteps:
     """As ``Stepper``, at large displacements: where a linear solver fails another one takes that step."""
 
-    def __init__(self, problem: FiniteProblem, solver: LinearSolver, control: Control) -> None:
+    def __init__(self, problem: ContactProblem, solver: LinearSolver, control: Control) -> None:
         self._problem, self._solver, self._control = problem, solver, control
         self._stands_in: LinearSolver | None = None
         self._limit = min(control.settings.steps.most, control.limit) if problem.pairs else control.limit
@@ -81,14 +81,15 @@ def _led(setting: Setting, before: State, pace: Pace, failed: Attempt) -> Sequen
     if led.converged:
         return led.attempts
     where = hanging(setting.problem, before, failed.cycling)
-    away = lifted(setting.problem.ahead(before, time), before)
-    more = "" if away or goal is None else overcome(setting.problem.ahead(before, goal))
+    frame = setting.problem.ended(before)
+    away = lifted(setting.problem.ahead(before, frame, time), before)
+    more = "" if away or goal is None else overcome(setting.problem.ahead(before, frame, goal))
     law = gives_way(setting.problem, failed.reason)
     told = (failed.reason, law, where, away, more, led.attempts[-1].reason)
     return [replace(failed, reason="; ".join(filter(None, told)))]
 
 
-def extrapolated(problem: FiniteProblem, earlier: State, before: State, time: float) -> State:
+def extrapolated(problem: ContactProblem, earlier: State, before: State, time: float) -> State:
     """A guess at ``time`` from the last two converged states, theory (G9): pressures stay open or pushing."""
     ratio = (time - before.time) / (before.time - earlier.time)
     ahead = before.multipliers + ratio * (before.multipliers - earlier.multipliers)

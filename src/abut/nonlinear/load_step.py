@@ -72,10 +72,10 @@ def _ended(task: Task, time: float, found: Found, prepared: Prepared, inside: ND
     problem: Problem = task.problem
     largest = largest_so_far(prepared.system, found.state, task.increment)
     system = prepared.system if found.system is None else found.system  # one without contact has no length
-    state, whole = problem.expand(task.before, found.state, found.laws, system)
+    state, whole = problem.expand(task.before, task.frame, found.state, found.laws, system)
     state = replace(state, largest=largest)
     if found.converged:
-        state = problem.accepted(task.before, state, whole)
+        state = problem.accepted(task.before, task.frame, state, whole)
     return Attempt(
         task.increment.number, state, found.converged, found.iterations, found.cycling, inside, time, found.reason,
         between=found.between, balance=None if found.system is None else Balance.of(whole, state),

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from abut.linear.solver import LinearSolver, Prepared
 from abut.nonlinear.active_set import solve_step
 from abut.nonlinear.exact import Aim
 from abut.nonlinear.iteration import Found, Increment, largest_force
+from abut.problem.frame import Frame
 from abut.problem.linearised import Linearised
 from abut.problem.problem import Problem
 from abut.solution import Iteration
@@ -29,6 +31,11 @@ class Task:
     limit: int
     observe: Callable[[Iteration], None]
 
+    @cached_property
+    def frame(self) -> Frame:
+        """What is fixed during the step."""
+        return self.problem.frame(self.before)
+
 
 def newton(
     task: Task,
@@ -44,12 +51,12 @@ def newton(
     anew at each state that this search finds, until its forces are in balance there. earlier, aim, settle: as for
     ``abut.nonlinear.active_set.solve_step``."""
     problem, solver, settings = task.problem, task.solver, task.increment.settings.newton
-    system = problem.linearise(task.before, guess)
+    system = problem.linearise(task.before, task.frame, guess)
     prepared = solver.prepare(system, previous)
     found = solve_step(prepared, guess, task.increment, task.limit, task.observe, earlier, aim, settle)
     error, near = np.inf, problem.constant
     while found.converged and not problem.constant:
-        system = problem.linearise(task.before, found.state)
+        system = problem.linearise(task.before, task.frame, found.state)
         before, error = error, _unbalanced(system, found.state, task.increment)
         if error <= settings.balanced or (error <= settings.stalled and error > 0.5 * before):
             near = True

@@ -14,17 +14,18 @@ from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.semismooth import Step, largest_of, solve_finite
 from abut.nonlinear.settings import DEFAULT, Settings
 from abut.problem.balance import Balance
-from abut.problem.finite import FiniteProblem
-from abut.problem.stabilising import without_drag
+from abut.problem.problem import ContactProblem
 from abut.solution import Iteration
 from abut.solution.state import State
+
+AGAIN = 1  # times that a step is solved with the frame that belongs to its end, where that is another one
 
 
 @dataclass(frozen=True)
 class Setting:
     """What attempts at a load step share. number: of the step; limit: of iterations; observe: called with each of them."""
 
-    problem: FiniteProblem
+    problem: ContactProblem
     solver: LinearSolver
     number: int
     limit: int
@@ -36,32 +37,25 @@ class Setting:
     ) -> Attempt:
         """The step from the converged state ``before`` to ``time``. guess: at its end; None: the tangent leads
         there; drag: on the way."""
-        problem, before = self.problem, without_drag(before)
-        begin = problem.with_functions(before, before)
-        following = problem.following(begin, guess or before)
-        begin, guess = problem.led(begin, following), guess and problem.led(guess, following)
-        if guess is not None:
-            begin = problem.with_late_points(begin, problem.displacement(guess), np.ones(len(guess.status), bool))
+        problem, known = self.problem, self.problem.ended(before)
+        frame = problem.frame(before, guess)
+        begin, guess = problem.handed(before, known, frame), guess and problem.handed(guess, known, frame)
         increment = Increment(self.number, before.largest, self.settings)
-        step = Step(problem, begin, self.solver, increment, self.limit, self.observe, careful=careful, drag=drag)
-        return _ended(*_settled(step, solve_finite(step, guess, time), time), time)
-
-
-def _settled(step: Step, found: Found, time: float) -> tuple[Step, Found]:
-    """Once more with the functions, gaps and points of slip that belong to the end of the step; as it was if that fails."""
-    if not found.converged:
-        return step, found
-    problem, closed = step.problem, found.state.closed
-    end = replace(found.state, time=time)
-    here = problem.displacement(end)
-    before = problem.with_late_points(problem.with_functions(step.before, end), here, closed)
-    following = problem.following(before, end, settled=True)
-    if before is step.before and not following:
-        return step, found
-    before, guess = (step.problem.led(each, following) for each in (before, found.state))
-    again = replace(step, before=before, limit=step.limit + len(step.done))
-    inside = solve_finite(again, guess, time)
-    return (again, inside) if inside.converged else (step, found)
+        step = Step(problem, begin, frame, self.solver, increment, self.limit, self.observe, careful=careful, drag=drag)
+        found = solve_finite(step, guess, time)
+        for _ in range(AGAIN):
+            frame = step.frame
+            if found.converged:
+                frame = problem.settled(step.before, step.frame, replace(found.state, time=time))
+            if frame is step.frame:
+                break
+            begin, guess = (problem.handed(each, step.frame, frame) for each in (step.before, found.state))
+            again = replace(step, before=begin, frame=frame, limit=step.limit + len(step.done))
+            inside = solve_finite(again, guess, time)
+            if not inside.converged:
+                break
+            step, found = again, inside
+        return _ended(step, found, time)
 
 
 def _ended(step: Step, found: Found, time: float) -> Attempt:
@@ -73,7 +67,7 @@ def _ended(step: Step, found: Found, time: float) -> Attempt:
     if found.converged:
         assert found.system is not None
         state = replace(state, largest=largest_of(found.system, state, step.increment))
-        state = step.problem.accepted(step.before, state, found.system)
+        state = step.problem.accepted(step.before, step.frame, state, found.system)
     return Attempt(
         step.increment.number, state, found.converged, found.iterations, found.cycling, none, time, step.failed,
         balance=balance,

@@ -24,9 +24,10 @@ from abut.nonlinear.opening import following_status, nearest_kept, without_pulli
 from abut.nonlinear.settings import NOTHING, Settings
 from abut.nonlinear.smallest import smallest, yielding
 from abut.nonlinear.unsettled import circling, most_at
-from abut.problem.finite import FiniteProblem
+from abut.problem.frame import Frame
 from abut.problem.laws import LawRows
 from abut.problem.linearised import Linearised
+from abut.problem.problem import ContactProblem
 from abut.solution import Iteration
 from abut.solution.state import CLOSED, Largest, State
 
@@ -63,13 +64,13 @@ class Trial:
 
 @dataclass
 class Step:
-    """A load step to solve. before: the last converged state; limit: of iterations; careful: with a line search; drag: that
-    it is led by, None without; asked:
-    which laws hold. prepared: the linear solver as it was last set up; done: its iterations, which grow; failed: why it
-    ended without a solution."""
+    """A load step to solve. before: the last converged state, its multipliers by the functions of ``frame``; limit: of
+    iterations; careful: with a line search; drag: that it is led by, None without; asked: which laws hold. prepared: the
+    linear solver as it was last set up; done: its iterations, which grow; failed: why it ended without a solution."""
 
-    problem: FiniteProblem
+    problem: ContactProblem
     before: State
+    frame: Frame
     solver: LinearSolver
     increment: Increment
     limit: int
@@ -132,7 +133,7 @@ def _solved(step: Step, guess: State | None, time: float) -> Found:
         step.failed = str(reason)
         if not step.done and step.before.time > 0.0:  # what is left open where it began
             begun, state = clocks.perf_counter(), replace(step.before, time=time)
-            _report(step, _judged(step, step.problem.ahead(step.before, time), state), begun)
+            _report(step, _judged(step, step.problem.ahead(step.before, step.frame, time), state), begun)
         return Found(step.before, tuple(step.done), False, none, friction_laws)
     changing = here.changed if step.failed else none
     return Found(here.state, tuple(step.done), not step.failed, changing, friction_laws, system=here.own)
@@ -236,7 +237,7 @@ def _balanced(step: Step, here: Trial, before: float) -> bool:
 def _carried(step: Step, time: float) -> State:
     """From the last converged state, what is prescribed changes with the tangent there, theory (G10); contact closes
     as far as it takes to hold every body."""
-    system = dragged(step.problem.ahead(step.before, time), step.drag)
+    system = dragged(step.problem.ahead(step.before, step.frame, time), step.drag)
     state = replace(step.before, time=time)
     closed = state.closed
     if step.drag is None:
@@ -254,7 +255,7 @@ def _carried(step: Step, time: float) -> State:
 
 def _balance(step: Step, state: State, guessed: bool = False) -> Trial:
     """The problem near a state, with the status that the laws ask for there."""
-    return _judged(step, step.problem.linearise(step.before, state), state, guessed)
+    return _judged(step, step.problem.linearise(step.before, step.frame, state), state, guessed)
 
 
 def _judged(step: Step, own: Linearised, state: State, guessed: bool = False) -> Trial:

@@ -13,7 +13,7 @@ from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.one_step import Setting
 from abut.nonlinear.pace import Pace
 from abut.nonlinear.settings import Settings
-from abut.problem.finite import FiniteProblem
+from abut.problem.problem import ContactProblem
 from abut.problem.stabilising import drag_of, with_drag
 from abut.solution import Iteration
 from abut.solution.state import State
@@ -79,7 +79,7 @@ def stabilised(setting: Setting, before: State, time: float) -> Led:
     backward Euler steps of a motion without inertia."""
     settings, asked = setting.settings, setting.settings.drag
     problem, setting = setting.problem, replace(setting, limit=min(2 * settings.steps.easy, setting.limit))
-    size, most = scale(problem.linearise(before, before)), 0.0
+    size, most = scale(problem.again(before, before)), 0.0
     begin = asked.first if not drag_of(before).any() else asked.first * asked.slow
     strength = Strength(begin, settings, asked.change)
     here, parts, spent = before, list[Attempt](), tuple[Iteration, ...]()
@@ -120,7 +120,7 @@ def stabilised(setting: Setting, before: State, time: float) -> Led:
     return Led((replace(part, iterations=spent or part.iterations, converged=False, reason=why),), bool(parts))
 
 
-def is_gone(problem: FiniteProblem, before: State, here: State, sizes: float) -> bool:
+def is_gone(problem: ContactProblem, before: State, here: State, sizes: float) -> bool:
     """Whether something has moved beyond all that loads of a model may mean."""
     way = problem.displacement(here) - problem.displacement(before)
     return bool(np.abs(way).max() > sizes * np.ptp(problem.model.mesh.points, axis=0).max())

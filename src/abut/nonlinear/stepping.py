@@ -26,7 +26,8 @@ class SmallSteps:
         if self._ready is None:
             self._control.prepares(self._solver)
             condensed = self._solver.condensed(self._problem)
-            self._ready = condensed, self._solver.prepare(condensed.linearise(self._first, self._first), None)
+            first = condensed.linearise(self._first, condensed.frame(self._first), self._first)
+            self._ready = condensed, self._solver.prepare(first, None)
             self._control.prepared(self._solver.note(self._ready[1]))
 
     def attempts(self, begin: Begin, pace: Pace) -> Sequence[Attempt]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from abut.materials.elastic import LinearElastic
 from abut.nonlinear.hanging import cured, place
 from abut.nonlinear.settings import Settings
-from abut.problem.finite import FiniteProblem
+from abut.problem.problem import ContactProblem
 
 Vector = NDArray[np.float64]
 
@@ -26,7 +26,7 @@ def circling(errors: Sequence[float], settings: Settings) -> bool:
     return False
 
 
-def most_at(problem: FiniteProblem, forces: Vector, laws: Vector) -> str:
+def most_at(problem: ContactProblem, forces: Vector, laws: Vector) -> str:
     """Where most is left open: forces (n_unknowns,) and laws (n,), both relative."""
     force, law = (np.abs(part) for part in (forces, laws))
     if not problem.pairs or law.max(initial=0.0) < force.max(initial=0.0):
@@ -42,7 +42,7 @@ def most_at(problem: FiniteProblem, forces: Vector, laws: Vector) -> str:
     return f"most in contact '{name}' at {place(problem, node)} in the undeformed mesh{cure}"
 
 
-def gives_way(problem: FiniteProblem, reason: str) -> str:
+def gives_way(problem: ContactProblem, reason: str) -> str:
     """What to say where cells of a linear elastic body have turned inside out, as the ``reason`` of a failed step says;
     empty elsewhere. Its law is Saint Venant-Kirchhoff's, whose stiffness in compression falls to none: under uniaxial
     strain at a stretch of 1 / sqrt(3)."""

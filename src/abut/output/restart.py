@@ -13,17 +13,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 import abut
+from abut.contact.slip_points import Past, SlipPoints
 from abut.errors import InputError
 from abut.io.atomic import make_directory, write_file
 from abut.io.names import is_file
 from abut.model import Model
 from abut.solution import History, Iteration, Largest, Saved, SavedPart, State
-from abut.solution.state import CLOSED, OPEN, SLIPPING
+from abut.solution.state import CLOSED, OPEN, SLIPPING, ContactHistory
 
 FOLDER = "restart"
-SCHEMA = 3  # of the files
+SCHEMA = 4  # of the files
 ARRAYS = ("unknowns", "multipliers", "status")  # of the state
-HISTORY = "history."  # what the names of the other ones begin with
+HISTORY, CONTACT, DRAG = "history.", "contact.", "drag"  # what the names of the other ones begin with, or are
+FIELDS = ("slips", "inner", "following", "fit")  # of a contact's history
 COUNTS, SIZES = ("step", "iteration", "active", "changed"), ("residual", "contact_residual", "penetration", "seconds")
 NAMED = 4  # differences of a changed model that the message lists
 
@@ -88,6 +90,13 @@ def _arrays(state: State, inside: NDArray[np.bool_], of: str) -> dict[str, Any]:
     """A state, and where "dual-P1" has ordinary functions, by name; of: what the names begin with."""
     arrays = {of + name: getattr(state, name) for name in ARRAYS}
     arrays |= {of + HISTORY + name: values for name, values in state.history.arrays.items()}
+    for name, contact in state.history.contacts.items():
+        parts: dict[str, Any] = {field: getattr(contact, field) for field in (*FIELDS, "landed")}
+        if contact.past is not None:
+            parts |= {"points": contact.past.points.array, "shift": contact.past.shift}
+        arrays |= {f"{of}{CONTACT}{part}.{name}": np.asarray(v) for part, v in parts.items() if v is not None}
+    if state.history.drag is not None:
+        arrays[of + DRAG] = state.history.drag
     largest = np.array([state.largest.force, state.largest.pressure])
     return {**arrays, of + "inside": inside, of + "time": np.array(state.time), of + "largest": largest}
 
@@ -105,8 +114,25 @@ def _state(data: Mapping[str, Any], names: Sequence[str], of: str) -> tuple[Stat
         raise ValueError("not the arrays of a state")
     if not (inside.dtype == bool and 0.0 < time <= 1.0):
         raise ValueError("not the arrays of a state")
-    state = State(time, **arrays, history=History(history), largest=Largest(*map(float, largest)))
-    return state, inside
+    drag = data[of + DRAG] if of + DRAG in names else None
+    whole = History(history, _contacts(data, names, of + CONTACT), drag)
+    return State(time, **arrays, history=whole, largest=Largest(*map(float, largest))), inside
+
+
+def _contacts(data: Mapping[str, Any], names: Sequence[str], of: str) -> dict[str, ContactHistory]:
+    """What contacts remember, from arrays by name. Raises any exception where they are none of a contact."""
+    parts: dict[str, dict[str, Any]] = {}
+    for key in names:
+        if key.startswith(of):
+            field, _, name = key.removeprefix(of).partition(".")
+            parts.setdefault(name, {})[field] = data[key]
+    result = {}
+    for name, found in parts.items():
+        past = Past(SlipPoints.from_array(found["points"]), found["shift"]) if "points" in found else None
+        unsure, limit = map(float, found["landed"]) if "landed" in found else (0.0, 0.0)
+        known = {field: found[field] for field in FIELDS if field in found}
+        result[name] = ContactHistory(past=past, landed=(unsure, limit) if "landed" in found else None, **known)
+    return result
 
 
 def load_steps(directory: Path, model: Mapping[str, str]) -> list[Saved]:

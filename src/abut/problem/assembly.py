@@ -11,23 +11,27 @@ from numpy.typing import NDArray
 from abut.errors import InputError
 from abut.model import Model
 from abut.model.conditions import weights
+from abut.problem.adjusted_gaps import taken_off
 from abut.problem.backend import Backend
 from abut.problem.body_terms import Bodies, DeadLoads, LinearBodies, SolidBodies
 from abut.problem.clock import Clock
 from abut.problem.constraints import Constraints, supports
-from abut.problem.contact_pairs import pairs
-from abut.problem.finite import finite_problem
+from abut.problem.contact_pairs import pairs, reach_of
+from abut.problem.current import Current
+from abut.problem.discretised import stacked, unit_of
 from abut.problem.finite_pairs import finite_pairs
 from abut.problem.follower_loads import FollowerLoads
 from abut.problem.free_modes import free_mode_springs
+from abut.problem.kinematics import Kinematics
 from abut.problem.loads import Loads, followers, loads
 from abut.problem.neutral_motions import neutral_motions
 from abut.problem.pair import Pair
 from abut.problem.preloads import LockedPreloads
-from abut.problem.problem import ContactProblem, stacked, unit_of
+from abut.problem.problem import ContactProblem
 from abut.problem.restraint import require_balance, require_unmoved, restraint
 from abut.problem.springs import Springs
 from abut.problem.terms import Term
+from abut.problem.turning_ties import CurrentTie, turning_tie
 from abut.solution import Observer, Phase
 
 
@@ -86,7 +90,7 @@ def assemble(
     else:
         bodies = SolidBodies(model, loaded, backend)
     beside = [*_beside(model, constraints, loaded), *([sprung] if sprung else [])]
-    constant = _is_constant(model, [bodies, *beside])
+    affine = not model.finite and _is_constant(model, [bodies, *beside])
     problem = ContactProblem(
         model=model,
         terms=(bodies, *beside),
@@ -95,11 +99,11 @@ def assemble(
         operator=stacked(every, n_free),
         restraint=restrained,
         springs=springs,
-        stiffness=reduced if constant else None,
+        stiffness=reduced if affine else None,
         motions=constraints.coordinates(restrained.free),
-        unit=unit_of(reduced) if constant else 0.0,
+        unit=unit_of(reduced) if affine else 0.0,
+        kinematics=[kinematics(pair, constraints, backend) for pair in every] if model.finite else None,
     )
-    problem = finite_problem(problem, backend.differentiate) if model.finite else problem
     for solid in model.solids:
         if solid.integration == "auto" and (how := model.integration(solid)) != "full":
             note(f"body '{solid.body}': integration = \"{how}\", as cells that keep their volume would lock otherwise")
@@ -112,6 +116,14 @@ def _is_constant(model: Model, terms: Sequence[Term]) -> bool:
     """Whether the stiffness is, and can be condensed: half a bolt that a force draws together, and contact alone holds,
     moves freely otherwise."""
     return all(term.constant for term in terms) and all(preload.force is None for preload in model.preloads)
+
+
+def kinematics(pair: Pair, constraints: Constraints, backend: Backend) -> Kinematics:
+    """Of a pair as from ``finite_pairs``, at current positions."""
+    reach = reach_of(constraints, pair.contactor, pair.target)
+    if pair.tied:
+        return CurrentTie(pair, turning_tie(pair, reach))
+    return Current(pair, backend.differentiate, taken_off(pair, reach) if pair.contact.adjust else None)
 
 
 def _beside(model: Model, constraints: Constraints, loaded: Loads) -> list[Term]:

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.problem.linearised import Linearised, by_pair
-from abut.problem.pair import Pair
+from abut.problem.linearised import Linearised
+from abut.problem.pair import Pair, by_pair
 from abut.solution.state import State
 
 Vector = NDArray[np.float64]

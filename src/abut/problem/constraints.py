@@ -18,7 +18,6 @@ from abut.mesh.mesh import Mesh
 from abut.model import Model, Support
 from abut.problem.elimination import eliminate, row_products
 from abut.problem.rigid_bodies import RigidBody, body_rows, rigid_bodies
-from abut.problem.rigid_modes import RigidModes
 from abut.problem.sections import shortenings_of
 from abut.problem.turns import Turn, Turns, about
 from abut.types import Array, Sparse
@@ -137,12 +136,6 @@ class Constraints:
         moves = (size > STUCK * np.maximum(size[:, -1:], 1e-300)) & (size[:, -1:] > 0.0)
         along = np.einsum("nda,nd->na", axes, directions)
         return np.einsum("nda,na->nd", axes, np.where(moves, along, 0.0))
-
-
-def resistance_of_supports(rigid: RigidModes, constraints: Constraints) -> NDArray[np.float64]:
-    """Gram matrix of what supports, equations and rigid bodies take out of the rigid motions."""
-    taken = constraints.taken(rigid.modes)
-    return np.asarray(taken.T @ taken / max(1.0, float(constraints.free.shape[0] - constraints.free.shape[1])))
 
 
 def supports(model: Model) -> Constraints:

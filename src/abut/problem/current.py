@@ -10,61 +10,39 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.cells import MAX_FACET_NODES
-from abut.contact.block_rows import CompressedRows, added_up, block_rows, in_place, weights_of_rows
+from abut.contact.block_rows import added_up, block_rows, in_place, weights_of_rows
 from abut.contact.corners import at_corners, edge_on
 from abut.contact.coupling import Coupling, CouplingOptions, couple, surface_degree
-from abut.contact.coupling_tangent import ContactLoad, CouplingTangent, Differentiate, differentiated
+from abut.contact.coupling_tangent import CouplingTangent, Differentiate, differentiated
 from abut.contact.geometry import Smoothing, facet_sizes, full_moments, nodal_normals, smoothing
 from abut.contact.moving_normals import MovingNormals, NormalPattern, normal_pattern
-from abut.contact.pressure_space import PressureSpace
+from abut.contact.pressure_space import DUAL_P1, PressureSpace
 from abut.contact.rim import Rim, goes_on
+from abut.contact.slip_points import Past, SlipPoints
 from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.problem.adjusted_gaps import BARELY, with_adjusted
-from abut.problem.current_friction import Rubbing, Tangents, rub_in_plane, rub_in_space
+from abut.problem.current_friction import Rubbing, Tangents
+from abut.problem.current_slips import Seen, contact_load, either, with_friction
 from abut.problem.dual_functions import Mixed, Mixture, dual_share, inner_now, mixed_part
 from abut.problem.edge_functions import Following, led
 from abut.problem.first_touch import Sides, apart
+from abut.problem.frame import PairFrame
 from abut.problem.gap_fit import MovedSides, Sight, fit_change
-from abut.problem.pair import Pair
-from abut.problem.slip_points import Past, SlipPoints, slip_now
+from abut.problem.kinematics import ContactNow, Placed
+from abut.problem.pair import TOUCHING, Pair
 from abut.problem.tangent_frames import Frames, anchors, tangents_2d
+from abut.solution.state import ContactHistory
 from abut.types import Sparse
 
 Array = NDArray[np.float64]
+SAME_FIT = 1e-2  # of their size at closed multipliers: what fits may differ by from those that belong to a state
+SAME_PRESSURE = 1e-3  # of the largest: a pressure, as a gap times the stiffness of a facet, up to which they may too
+RUBBING = 1e-2  # the same with friction, where states depend on their past anyway
 KNOWN = 0.05  # share of a function that the last step's points must cover, for its slip to be looked at there
 NEAR = 2.0  # facets between the surfaces up to which they are paired, beside what they have moved in the step
 OVERLAP = 1e-6  # facets by which surfaces overlap, beyond rounding
 GIVING = 8.0  # the same where a law of one's own lets them into each other
-
-
-@dataclass(frozen=True)
-class ContactNow:
-    """A pair at a state. pair: with surfaces, rows (of the forces) and weights as they are now; gap: (n,) weighted gaps and
-    slips; by_position: (n, dim n_points) their derivative; bending: (dim n_points, dim n_points) derivative of the contact
-    forces; without_history: (n_functions,) whose slip does not count."""
-
-    pair: Pair
-    gap: Array
-    by_position: Sparse
-    bending: Sparse
-    without_history: NDArray[np.bool_]
-
-
-@dataclass(frozen=True)
-class Place:
-    """Where a pair is. displacement, before: (dim n_points,) now and at the end of the last step; past: of that step,
-    None without friction; offset: what is added to all gaps now; inner: (n_facets,) not zero where functions of a dual
-    space are the ordinary ones in this step, None for nowhere; following: (n_functions,) which one each follows in this
-    step, None for itself; fit: (9 n_facets,) as from ``Current.fit``, or None."""
-
-    displacement: Array
-    before: Array
-    past: Past | None
-    offset: float
-    inner: Array | None = None
-    following: Array | None = None
-    fit: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -76,27 +54,88 @@ class Current:
     differentiate: Differentiate = differentiated
     adjusted: Array | None = None
 
-    def at(self, place: Place, multipliers: Array) -> ContactNow:
-        """Gaps, forces and derivatives with multipliers (n,). As in theory (G1), (G2)."""
-        contactor, target = self.surfaces(place.displacement)
-        options = self._options(place.displacement - place.before)
-        mixture = self._mixture(contactor, target, place.inner)
-        unmixed = self.pair if place.following is None else led(self.pair, place.following.astype(np.int64))
+    def frame(self, known: ContactHistory, before: Placed, near: Placed | None) -> PairFrame:
+        """As in ``Kinematics``: functions and fits that belong to ``before``, theory (P9), (G15), unless those of the last
+        step serve; functions follow others by where the step ends; points for slips that are covered there only."""
+        frame = PairFrame(known.past, known.inner, known.following, known.fit)
+        frame = self._with_following(self._with_functions(frame, before), near or before)
+        return frame if near is None else self._with_late(frame, before, near, np.ones_like(near.closed))
+
+    def settled(self, frame: PairFrame, before: Placed, end: Placed) -> PairFrame:
+        """As in ``Kinematics``."""
+        late = self._with_late(self._with_functions(frame, end), before, end, end.closed)
+        return self._with_following(late, end, settled=True)
+
+    def _with_functions(self, frame: PairFrame, now: Placed) -> PairFrame:
+        """With the ordinary functions of "dual-P1" inside what is closed there, and with fits; the same object where they
+        are there already, fits nearly."""
+        inner = self.inner(now.displacement, now.closed) if self.pair.space.name == DUAL_P1 else None
+        fit = self.fit(now.displacement) if self.fits else None
+        known = np.zeros(len(self.pair.contactor)) if frame.inner is None else frame.inner
+        if (inner is None or np.array_equal(known, inner)) and self._fitted(frame.fit, fit, now):
+            return frame
+        return replace(frame, inner=inner, fit=fit)
+
+    def _fitted(self, known: Array | None, fit: Array | None, now: Placed) -> bool:
+        """Whether a known fit serves where another belongs: of its size and of the largest pressure, at multipliers that
+        are closed."""
+        pair, touching = self.pair, now.closed[self.pair.normal]
+        if fit is None:
+            return True
+        if known is None or not touching.any():
+            return False
+        weight, down = pair.weight[pair.normal], pair.space.transfer.T
+        change, size = (np.abs(down @ each / weight)[touching].max() for each in (fit - known, fit))
+        most = (RUBBING if pair.frictional else SAME_PRESSURE) * now.multipliers[pair.normal].max()
+        return bool(change <= SAME_FIT * size or pair.stiffness * change <= most)
+
+    def _with_following(self, frame: PairFrame, near: Placed, settled: bool = False) -> PairFrame:
+        """With which functions follow which at the state ``near``; settled: where that matters."""
+        now = self.following(near.displacement, near.closed, near.offset)
+        known = np.arange(len(now.to)) if frame.following is None else frame.following
+        if np.array_equal(now.to, known) or (settled and not now.matters(known, near.closed[self.pair.normal])):
+            return frame
+        return replace(frame, following=now.to)
+
+    def _with_late(self, frame: PairFrame, before: Placed, near: Placed, asked: NDArray[np.bool_]) -> PairFrame:
+        """With points for the multipliers asked for, (n,), that were hardly covered before."""
+        if frame.past is None:
+            return frame
+        past = self.with_late(frame.past, before.displacement, near.displacement, asked)
+        return frame if past is frame.past else replace(frame, past=past)
+
+    def touching(self, rest: Placed, frame: PairFrame) -> NDArray[np.bool_]:
+        """As in ``Kinematics``."""
+        pair, now = self.pair, self.at(frame, rest, rest.displacement)
+        seen = ~bare(now.pair)
+        if pair.two_way:
+            return seen
+        weight = (
+            pair.weight[pair.normal] if pair.smooth else now.pair.space.weight
+        )  # of what the gap is integrated over
+        return pair.of_functions((now.gap[pair.normal] <= TOUCHING * pair.size * weight) & seen)
+
+    def at(self, frame: PairFrame, now: Placed, before: Array) -> ContactNow:
+        """As in ``Kinematics``, theory (G1), (G2)."""
+        contactor, target = self.surfaces(now.displacement)
+        multipliers, options = now.multipliers, self._options(now.displacement - before)
+        mixture = self._mixture(contactor, target, frame.inner)
+        unmixed = self.pair if frame.following is None else led(self.pair, frame.following)
         pair = unmixed if mixture is None else mixed_part(unmixed, mixture)
         down = weights_of_rows(pair.space.transfer.T)
         normals = self._normals.at(contactor)
         tangents = self._tangents(contactor, normals, multipliers)
-        load = _load(pair, multipliers, tangents)
+        load = contact_load(pair, multipliers, tangents)
         by = self.differentiate(contactor, target, pair.coupling.degree, options, load, normals)
-        by = by if place.fit is None else replace(by, gap_value=by.gap_value + place.fit)
+        by = by if frame.fit is None else replace(by, gap_value=by.gap_value + frame.fit)
         points, dim = len(contactor.points), contactor.dim
         operators = added_up(down, by.operators, points)
         along = operators[0]
         mixed = None if mixture is None else Mixed.of(mixture.change(contactor, by.weight), by, unmixed)
         weight = np.asarray(down @ by.weight_value)
-        gap, by_position = self._gaps(down, by, mixed, place.offset)
+        gap, by_position = self._gaps(down, by, mixed, now.offset)
         bending = by.force_tangent.tocsr()
-        now = ContactNow(
+        found = ContactNow(
             replace(
                 pair, contactor=contactor, target=target, space=replace(pair.space, weight=weight),
                 rows=block_rows(in_place(along[..., :dim], operators), points).tocsr(),
@@ -105,13 +144,13 @@ class Current:
             np.zeros(len(pair.space), dtype=bool),
         )  # fmt: skip
         if not pair.frictional:
-            return now
-        assert place.past is not None
-        seen = _Seen(pair, now.pair.contactor, target, normals, tangents, by, down, operators, mixed)
-        past = place.past if place.following is None else self._led(place.past, place.following.astype(np.int64))
+            return found
+        assert frame.past is not None
+        seen = Seen(pair, found.pair.contactor, target, normals, tangents, by, down, operators, mixed)
+        past = frame.past if frame.following is None else self._led(frame.past, frame.following)
         made, without = self._rubbed(seen, past, multipliers)
         turned = tangents_2d(normals, *self._anchors) if tangents is None else tangents.now.tangents
-        return _with(now, made, turned, without)
+        return with_friction(found, made, turned, without)
 
     def _led(self, past: Past, to: NDArray[np.int64]) -> Past:
         """With the slips at which functions close added to those of the functions that they follow."""
@@ -122,14 +161,14 @@ class Current:
         np.add.at(shift, leader[both] - n, past.shift[along[both] - n])
         return replace(past, shift=shift)
 
-    def _rubbed(self, seen: _Seen, past: Past, multipliers: Array) -> tuple[Rubbing, NDArray[np.bool_]]:
+    def _rubbed(self, seen: Seen, past: Past, multipliers: Array) -> tuple[Rubbing, NDArray[np.bool_]]:
         """With slips from where they count, and the functions (n_functions,) whose slip does not."""
         made, unknown = seen.rubbed(past.points, multipliers), ~self._covers(past.points, KNOWN)
         shift = past.shift
         if past.late is not None:
             late, other = unknown & self._covers(past.late, BARELY), seen.rubbed(past.late, multipliers)
             unknown &= ~late
-            made = _either(made, other, self.pair.of_functions(late)[self.pair.tangential])
+            made = either(made, other, self.pair.of_functions(late)[self.pair.tangential])
         return replace(made, slip=made.slip - shift), unknown
 
     def _covers(self, points: SlipPoints, share: float) -> NDArray[np.bool_]:
@@ -178,8 +217,11 @@ class Current:
         share = dual_share(sight.covered(len(contactor)) / full_moments(contactor, 0)[:, 0])
         return fit_change(sides, sight, self._across, share)
 
-    def past(self, displacement: Array, closed: NDArray[np.bool_]) -> Past:
-        """From where the next step's slip counts, of a converged state with multipliers (n,) closed there."""
+    def past(self, displacement: Array, closed: NDArray[np.bool_]) -> Past | None:
+        """From where the next step's slip counts, of a converged state with multipliers (n,) closed there; None
+        without friction."""
+        if not self.pair.frictional:
+            return None
         points = self._points(displacement)
         shift = self._apart(points, displacement)
         return Past(
@@ -228,7 +270,7 @@ class Current:
 
     def gaps(self, space: PressureSpace, seen: Coupling, offset: float, fit: Array | None) -> Array:
         """Mean gaps times what is covered, (n_functions,), in a coupling as from ``shown``; space: of the pair there;
-        offset, fit: as in ``Place``."""
+        offset: as in ``Placed``; fit: as in ``PairFrame``."""
         gap, weight = (space.transfer.T @ part for part in (seen.gap if fit is None else seen.gap + fit, seen.weight))
         return np.asarray(gap + (offset if self.adjusted is None else offset + self.adjusted) * weight)
 
@@ -331,61 +373,6 @@ class Current:
         return Tangents(self._frames, self._frames.at(contactor, normals), along, self._kept)
 
 
-@dataclass(frozen=True)
-class _Seen:
-    """A pair where it is, with its functions as they are mixed there. down: (n_functions, 9 n_facets) of the functions;
-    operators: those of ``by``, added up with it; tangents: None in 2D; mixed: None where no function is a dual one."""
-
-    pair: Pair
-    contactor: Surface
-    target: Surface
-    normals: MovingNormals
-    tangents: Tangents | None
-    by: CouplingTangent
-    down: Sparse
-    operators: CompressedRows
-    mixed: Mixed | None
-
-    def rubbed(self, points: SlipPoints, multipliers: Array) -> Rubbing:
-        """With the slip of points, tractions being those of multipliers (n,)."""
-        slip, n_points = slip_now(points, self.contactor, self.target, self.normals), len(self.contactor.points)
-        if self.tangents is None:
-            part = weights_of_rows(self.pair.components[1].transfer.T)
-            made = rub_in_plane(part, self.by, added_up(part, self.by.operators, n_points), slip)
-            along = multipliers[self.pair.tangential]
-            return made if self.mixed is None else self.mixed.rubbed_in_plane(made, slip, along)
-        square = in_place(self.operators[0][..., 3:].reshape(-1, 3, 3), self.operators)
-        made = rub_in_space(self.down, self.by, square, slip, self.tangents, self.contactor)
-        return made if self.mixed is None else self.mixed.rubbed_in_space(made, slip, self.tangents)
-
-
-def _either(one: Rubbing, other: Rubbing, those: NDArray[np.bool_]) -> Rubbing:
-    """With the slips of the other in ``those`` rows (m,); forces are the same."""
-    keep, take = (sp.diags(mask.astype(float)) for mask in (~those, those))
-    by_position = keep @ one.by_position + take @ other.by_position
-    return replace(one, slip=np.where(those, other.slip, one.slip), by_position=by_position.tocsr())
-
-
-def _load(pair: Pair, multipliers: Array, tangents: Tangents | None) -> ContactLoad:
-    pressure = pair.space.transfer @ multipliers[pair.normal]
-    if tangents is not None:
-        return ContactLoad(pressure, traction=pair.space.transfer @ tangents.traction)
-    if pair.frictional:
-        return ContactLoad(pressure, turned=pair.components[1].transfer @ multipliers[pair.tangential])
-    return ContactLoad(pressure)
-
-
-def _with(now: ContactNow, made: Rubbing, tangents: Array, without_history: NDArray[np.bool_]) -> ContactNow:
-    """The same with friction; tangents: (n_functions, dim - 1, dim)."""
-    assert now.pair.slip is not None
-    return ContactNow(
-        replace(
-            now.pair,
-            rows=sp.vstack([now.pair.rows, made.rows], format="csr"),
-            slip=replace(now.pair.slip, tangents=tangents),
-        ),
-        np.concatenate([now.gap, made.slip]),
-        sp.vstack([now.by_position, made.by_position], format="csr"),
-        now.bending if made.bending is None else (now.bending + made.bending.tocsr()),
-        without_history,
-    )
+def bare(pair: Pair) -> NDArray[np.bool_]:
+    """(n_functions,) with hardly any target opposite now: they carry no pressure."""
+    return np.asarray(pair.space.weight < BARELY * pair.weight[pair.normal])

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from abut.contact.block_rows import CompressedRows, added_up, block_rows, in_place, row_numbers
 from abut.contact.coupling_tangent import CouplingTangent
+from abut.contact.slip_points import SlipNow
 from abut.mesh.surface import Surface
-from abut.problem.slip_points import SlipNow
 from abut.problem.tangent_frames import Frames, FramesNow
 from abut.types import Sparse
 

@@ -17,10 +17,10 @@ from abut.contact.facet_area import area_change
 from abut.contact.geometry import beside_others, full_moments
 from abut.contact.pressure_space import PressureSpace, inner_facets, partly_dual
 from abut.contact.rim import ends_on_target, goes_on, rim
+from abut.contact.slip_points import SlipNow
 from abut.mesh.surface import Surface
 from abut.problem.current_friction import Rubbing, Tangents
 from abut.problem.pair import WHOLE, Pair
-from abut.problem.slip_points import SlipNow
 from abut.types import Sparse
 
 CLOSE = 1.0 - WHOLE  # covered share of a facet from which up its functions are the dual ones

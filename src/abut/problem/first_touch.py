@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from abut.cells import MAX_FACET_NODES
 from abut.contact.bulge import bulge_at
 from abut.contact.geometry import facet_sizes
+from abut.contact.slip_points import SlipPoints
 from abut.mesh.surface import Surface
-from abut.problem.slip_points import SlipPoints
 
 ROLLING = 1.0 / 3.0  # share of a round contactor's normal in the way on which it and a flat target come together
 FLAT = 1e-9  # turn of the normal over a facet that is none

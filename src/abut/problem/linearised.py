@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import accumulate
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.problem.laws import LawRows
-from abut.problem.pair import Pair
+from abut.problem.pair import Pair, by_pair
 from abut.problem.restraint import Restraint
 from abut.problem.terms import Share
 from abut.solution.state import State
@@ -180,12 +178,6 @@ class Linearised:
             by_gap=None if at_points else _diagonal([law.by_gap for law in laws]),
             by_multiplier=by_pressure,
         )
-
-
-def by_pair(pairs: Sequence[Pair], values: NDArray[Any]) -> list[NDArray[Any]]:
-    """Values of all multipliers (n,), pair by pair."""
-    ends = accumulate(len(pair) for pair in pairs)
-    return [values[end - len(pair) : end] for pair, end in zip(pairs, ends)]
 
 
 def _diagonal(blocks: Sequence[Sparse]) -> Sparse:

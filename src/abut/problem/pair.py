@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import accumulate
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -19,6 +22,7 @@ from abut.model.contact import TWO_WAY
 from abut.model.friction import FrictionValues
 from abut.types import Array, Sparse
 
+TOUCHING = 1e-3  # initial gap over facet size below which a multiplier starts active
 WHOLE = 1e-2  # a facet covered to within this share is fully covered
 
 
@@ -174,3 +178,9 @@ class Pair:
 
     def __len__(self) -> int:
         return int(self.operator.shape[0])
+
+
+def by_pair(pairs: Sequence[Pair], values: NDArray[Any]) -> list[NDArray[Any]]:
+    """Values of all multipliers (n,), pair by pair."""
+    ends = accumulate(len(pair) for pair in pairs)
+    return [values[end - len(pair) : end] for pair, end in zip(pairs, ends)]

@@ -11,7 +11,7 @@ from scipy.optimize import nnls
 
 from abut.errors import SingularModelError
 from abut.mesh.mesh import Mesh
-from abut.problem.constraints import Constraints, resistance_of_supports
+from abut.problem.constraints import Constraints
 from abut.problem.pair import Pair
 from abut.problem.rigid_modes import (
     RigidModes,
@@ -288,3 +288,9 @@ def _restraint(
     ties = [resistance_of_rows(rigid, p.rows) for p in pairs if p.two_way]
     by_supports = free_motions([support, *ties]).shape[1] == 0
     return Restraint(rigid, constraints, support, pairs, bare, by_supports, rigid.modes @ free_motions([support]))
+
+
+def resistance_of_supports(rigid: RigidModes, constraints: Constraints) -> NDArray[np.float64]:
+    """Gram matrix of what supports, equations and rigid bodies take out of the rigid motions."""
+    taken = constraints.taken(rigid.modes)
+    return np.asarray(taken.T @ taken / max(1.0, float(constraints.free.shape[0] - constraints.free.shape[1])))

@@ -9,11 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.problem.linearised import by_pair
-from abut.problem.pair import Pair
+from abut.problem.pair import Pair, by_pair
 from abut.solution.state import OPEN, SLIPPING, State
 
-LANDED = "landed"  # whose history is the two forces of ``Landed`` of each contact, in the step that ended
 Array = NDArray[np.float64]
 
 
@@ -59,7 +57,7 @@ def landed(pair: Pair, end: PairEnd, factors: Array) -> Landed:
 
 def landed_in(state: State) -> Landed:
     """Of all contacts, in the step that a state ended."""
-    forces = [array.ravel() for array in state.history.of(LANDED).values()]
+    forces = [contact.landed for contact in state.history.contacts.values() if contact.landed is not None]
     unsure, limit = np.sum(forces, axis=0) if forces else (0.0, 0.0)
     return Landed(float(unsure), float(limit))
 

@@ -11,9 +11,12 @@ from numpy.typing import NDArray
 from abut.cells import MAX_FACET_NODES
 from abut.contact.coupling import CouplingOptions
 from abut.contact.moving_normals import MovingNormals, NormalPattern, normal_pattern
+from abut.contact.slip_points import Past, SlipPoints
 from abut.mesh.surface import Surface
+from abut.problem.frame import PairFrame
+from abut.problem.kinematics import ContactNow, Placed
 from abut.problem.pair import Pair
-from abut.problem.slip_points import SlipPoints
+from abut.solution.state import ContactHistory
 from abut.types import Sparse
 
 CLOSED = 1e-9  # gap over the facet size from which down a tie is as good as closed
@@ -36,6 +39,38 @@ class TurningTie:
         turned = _each(self.pattern, normals) - self.at_rest
         rows = self.pair.rows - self.across @ normals.turning(len(self.pair.contactor.points))
         return self.pair.rows @ displacement - self.across @ turned, rows.tocsr()
+
+
+@dataclass(frozen=True)
+class CurrentTie:
+    """As ``Kinematics``, of a tie: it holds surfaces together as they were at the outset. across: what turns with the
+    contactor, None where there are no gaps."""
+
+    pair: Pair
+    across: TurningTie | None
+
+    def frame(self, known: ContactHistory, before: Placed, near: Placed | None) -> PairFrame:
+        """As in ``Kinematics``: nothing is."""
+        return PairFrame()
+
+    def settled(self, frame: PairFrame, before: Placed, end: Placed) -> PairFrame:
+        """As in ``Kinematics``."""
+        return frame
+
+    def at(self, frame: PairFrame, now: Placed, before: Array) -> ContactNow:
+        """As in ``Kinematics``."""
+        u, pair = now.displacement, self.pair
+        gap, rows = (pair.rows @ u, pair.rows) if self.across is None else self.across.at(u)
+        none = sp.csr_matrix((len(u),) * 2)
+        return ContactNow(replace(pair, rows=rows), gap, rows, none, np.zeros(len(pair.space), dtype=bool))
+
+    def touching(self, rest: Placed, frame: PairFrame) -> NDArray[np.bool_]:
+        """As in ``Kinematics``: all of it."""
+        return np.ones(len(self.pair), dtype=bool)
+
+    def past(self, displacement: Array, closed: NDArray[np.bool_]) -> Past | None:
+        """As in ``Kinematics``."""
+        return None
 
 
 def turning_tie(pair: Pair, reach: float) -> TurningTie | None:

@@ -8,16 +8,39 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.contact.slip_points import Past
+
 Vector = NDArray[np.float64]
 OPEN, CLOSED, SLIPPING = np.int8(0), np.int8(1), np.int8(2)  # status of a multiplier; closed with friction: stuck
 
 
 @dataclass(frozen=True)
+class ContactHistory:
+    """What a contact remembers at a converged state.
+
+    slips: (n, 4) of its multipliers, with friction: in the step that ended, in all steps in contact, what did not count in
+    the step because it only came closer, and 1 where nothing did, for want of a past. The rest at large displacements only:
+    past: from where the next step's slip counts; inner, following, fit: what was fixed during the step that ended, as in
+    ``abut.problem.frame.PairFrame``; landed: forces of friction, as in ``abut.problem.step_error.Landed``."""
+
+    slips: Vector | None = None
+    past: Past | None = None
+    inner: Vector | None = None
+    following: NDArray[np.int64] | None = None
+    fit: Vector | None = None
+    landed: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True)
 class History:
-    """What bodies and contacts remember: arrays (n_integration_points, k) by name, "bodies.pin": that of the term that owns
-    them, and of its part."""
+    """What a state remembers of its past.
+
+    arrays: (n_integration_points, k) of bodies by name, "bodies.pin": that of the term that owns them, and of its part;
+    contacts: by name; drag: (n_free,) force that a drag has in it, where it was reached under one."""
 
     arrays: Mapping[str, Vector] = field(default_factory=dict)
+    contacts: Mapping[str, ContactHistory] = field(default_factory=dict)
+    drag: Vector | None = None
 
     def of(self, term: str) -> Mapping[str, Vector]:
         """The arrays of a term, by part."""
@@ -25,15 +48,14 @@ class History:
             name.partition(".")[2]: values for name, values in self.arrays.items() if name.partition(".")[0] == term
         }
 
+    def contact(self, name: str) -> ContactHistory:
+        """Of a contact, empty at the start."""
+        return self.contacts.get(name, ContactHistory())
+
     def with_term(self, term: str, parts: Mapping[str, Vector]) -> History:
         """The same with a term's arrays replaced."""
-        return (
-            History({**self.arrays, **{f"{term}.{part}": values for part, values in parts.items()}}) if parts else self
-        )
-
-    def without(self, term: str) -> History:
-        """The same without a term's arrays."""
-        return History({name: values for name, values in self.arrays.items() if name.partition(".")[0] != term})
+        new = {f"{term}.{part}": values for part, values in parts.items()}
+        return replace(self, arrays={**self.arrays, **new}) if parts else self
 
 
 @dataclass(frozen=True)

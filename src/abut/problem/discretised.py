@@ -1,0 +1,94 @@
+"""What a contact problem is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut.model import Model
+from abut.model.conditions import weights
+from abut.model.offset import offsets
+from abut.problem.constraints import Constraints
+from abut.problem.free_modes import FreeModeSprings
+from abut.problem.kinematics import Kinematics, Placed
+from abut.problem.pair import Pair, by_pair
+from abut.problem.restraint import Restraint
+from abut.problem.terms import Motion, Share, Term
+from abut.solution.state import State
+from abut.types import Operator, Sparse
+
+
+@dataclass(frozen=True)
+class Discretised:
+    """Bodies, loads and contact on the free displacements: what a problem is made of.
+
+    terms: what adds to the balance of forces; held: supports, u = Z q + u_prescribed(t), theory (F8); pairs, operator
+    (n, n_free) all of them stacked; restraint: of rigid-body modes; springs: on free rigid-body modes; stiffness:
+    (n_free, n_free) where every term is constant, else None; motions: (n_free, m) rigid-body modes that supports leave free;
+    unit: size of the stiffness' entries, where it is constant; kinematics: of each pair at current positions, None where all
+    is looked at where bodies were.
+    """
+
+    model: Model
+    terms: Sequence[Term]
+    constraints: Constraints
+    pairs: Sequence[Pair]
+    operator: Operator
+    restraint: Restraint
+    springs: FreeModeSprings
+    stiffness: Operator
+    motions: NDArray[np.float64]
+    unit: float = 0.0
+    kinematics: Sequence[Kinematics] | None = None
+
+    @property
+    def n_free(self) -> int:
+        return int(self.constraints.free.shape[1])
+
+    def displacement(self, state: State) -> NDArray[np.float64]:
+        """Of all points, (dim n_points,)."""
+        return self.constraints.displacement(state.unknowns, weights(self.model.histories, state.time))
+
+    def split(self, values: NDArray[Any]) -> list[NDArray[Any]]:
+        """Values of all multipliers (n,), pair by pair."""
+        return by_pair(self.pairs, values)
+
+    def added(self, pair: Pair, time: float) -> float:
+        """What is added to all gaps of a pair at a time."""
+        constant, varying = offsets(self.model, pair.contact)
+        return constant + float(varying @ weights(self.model.histories, time))
+
+    def placed(self, state: State) -> list[Placed]:
+        """Each pair in a state."""
+        here, parts = self.displacement(state), (self.split(state.multipliers), self.split(state.closed))
+        return [
+            Placed(here, values, closed, self.added(pair, state.time))
+            for pair, values, closed in zip(self.pairs, *parts)
+        ]
+
+    def shares(self, before: State, there: Motion, now: Motion) -> list[Share]:
+        """Of every term at ``now``, which follows ``there``, with the history of ``before``."""
+        return [
+            term.evaluate(*(replace(motion, history=before.history.of(term.name)) for motion in (there, now)))
+            for term in self.terms
+        ]
+
+    def named(self, shares: Sequence[Share]) -> Mapping[str, Share]:
+        """Of the terms by name, without their tangents."""
+        return {term.name: replace(share, tangent=None) for term, share in zip(self.terms, shares)}
+
+
+def stacked(pairs: Sequence[Pair], n_free: int) -> Sparse:
+    """The operators of all pairs, (n, n_free)."""
+    return sp.vstack([p.operator for p in pairs]).tocsr() if pairs else sp.csr_matrix((0, n_free))
+
+
+def unit_of(stiffness: Sparse) -> float:
+    """Size of a stiffness' entries."""
+    diagonal = stiffness.diagonal()
+    return float(np.median(diagonal)) if len(diagonal) else 1.0
