@@ -93,7 +93,7 @@ def test_energy_is_balanced_exactly(name: str) -> None:
     own = [step.energy for step in solution.steps if step.energy is not None]
     assert max(energy.error for energy in own) < BALANCED
     assert any(energy.friction > 1e-6 * energy.size for energy in own)
-    assert all(energy.limit <= 1e-7 for energy in own)
+    assert all(energy.limit <= 1e-6 for energy in own)  # what equilibrium leaves open, 1e-9 of forces, beside work done
     assert checks(solution)["", "energy balance"].passed
     for check in solution.certificate:
         if check.name in ("force balance", "moment balance"):

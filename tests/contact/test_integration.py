@@ -168,7 +168,7 @@ def test_contact_patch_test(kind: str, how: str) -> None:
             "strain",
             "'b-bar' is for quad4 and hex8 cells, the body has quad8; use 'full', or 'reduced' near",
         ),
-        ("tri3", "b-bar", "strain", "the body has tri3; use 'full', with tri6 cells near"),
+        ("tri3", "b-bar", "strain", "the body has tri3; use 'full', with tri6 or quad8 cells near"),
         ("quad4", "b-bar", "stress", "plane stress, which does not lock"),
         ("hex8", "bbar", None, "integration"),
     ],

@@ -17,7 +17,7 @@ from abut.nonlinear.exchange import exchanged
 from abut.nonlinear.finite_laws import Asked, barely_covered, laws_of, left_open, status_of, wanted_status
 from abut.nonlinear.forcing import forcing
 from abut.nonlinear.friction_newton import friction_laws
-from abut.nonlinear.holding import resisting, sticking
+from abut.nonlinear.holding import not_adrift, resisting, sticking
 from abut.nonlinear.iteration import Found, Increment, advance, largest_force, largest_pressure, part_of, points
 from abut.nonlinear.line_search import shortened
 from abut.nonlinear.opening import following_status, nearest_kept, without_pulling
@@ -221,10 +221,11 @@ def _iterated(
     if begins and step.drag is None:
         system = resisting(step.problem, system, state, step.settings)
     there = step.advanced(system, state, laws, accuracy)
-    stuck = sticking(step.problem, system, state, there, step.settings.holding.near)
-    if stuck is state:
-        return there
-    return step.advanced(system, stuck, laws_of(system, stuck, step.asked), accuracy)
+    near = step.settings.holding.near
+    stuck = sticking(step.problem, system, state, there, near)
+    if stuck is not state:
+        there = step.advanced(system, stuck, laws_of(system, stuck, step.asked), accuracy)
+    return not_adrift(step.problem, system, stuck, there, near)
 
 
 def _balanced(step: Step, here: Trial, before: float) -> bool:
