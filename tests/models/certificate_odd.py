@@ -233,6 +233,8 @@ def pushed_along(model: abut.Model, on: str, by: float) -> abut.Model:
 
 
 def nearly_incompressible(model: abut.Model) -> abut.Model:
-    """With a Poisson's ratio of 0.49999 all over."""
-    solids = [replace(s, material=abut.LinearElastic(s.material.young, 0.49999)) for s in model.solids]
+    """With a Poisson's ratio of 0.49999 all over, and cells that were asked to be fully integrated."""
+    solids = [
+        replace(s, material=abut.LinearElastic(s.material.young, 0.49999), integration="full") for s in model.solids
+    ]
     return replace(model, solids=solids)

@@ -57,10 +57,11 @@ def test_pin_that_falls() -> None:
     assert iterations < 50
 
 
-@pytest.mark.parametrize(("aside", "most"), [(0.0, 45), (0.4, 45)])
+@pytest.mark.parametrize(("aside", "most"), [(0.0, 55), (0.4, 55)])
 def test_wedge_into_round_block(aside: float, most: int) -> None:
     """Points on both faces at the wedge's corner take turns as the rubber comes round it. On the crown its edge spans two
-    facets of the block: the point in its middle presses only if both beside it open (261 iterations if one does)."""
+    facets of the block: the point in its middle presses only if both beside it open (261 iterations if one does). A few of
+    the steps follow the onset of slip."""
     _, iterations = solved(wedge("quad4", aside))
     assert iterations <= most
 

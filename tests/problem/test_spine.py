@@ -26,6 +26,7 @@ from abut.nonlinear.pace import Pace, given_pace
 from abut.nonlinear.settings import DEFAULT
 from abut.nonlinear.stepping import SmallSteps
 from abut.output.restart import load_steps, save_step
+from abut.problem.step_error import Onset
 from abut.verify import law_tangents, material_tangent
 from models.friction import rubbed
 from models.oracle import assembled
@@ -99,7 +100,7 @@ def test_a_failed_attempt_leaves_nothing_behind(monkeypatch: pytest.MonkeyPatch)
     def never(number: int, reason: NotConverged) -> Direct:
         raise reason
 
-    control = Control(50, none, none, none, none, never, none)
+    control = Control(50, none, none, none, none, never, none, lambda *_: Onset(), none)
     first = problem.start()
     attempts = list(march(SmallSteps(problem, first, Direct(), control), [first], Pace([1.0], first=1.0), control))
     assert [start for start, _ in starts] == [0.0, 0.0, 0.0, 0.25, 0.25, 0.4375, 0.71875]

@@ -155,9 +155,6 @@ class Run:
                 f"time {time:.6g} first, not to {attempt.time:.6g}"
             )
 
-        def slip(before: State, now: State) -> Onset:
-            return onset(problem.pairs, before, now, weights(self.model.histories, now.time))
-
         def refines(attempt: Attempt, time: float) -> None:
             self.told.note(
                 f"step {attempt.number} to time {attempt.time:.6g} jumps over the onset of slip: it goes to time {time:.6g} "
@@ -165,15 +162,11 @@ class Run:
             )
 
         control = Control(
-            solve.max_iterations, iterated, begins, prepares, self.told.note, self._fallback, halves, slip, refines,
+            solve.max_iterations, iterated, begins, prepares, self.told.note, self._fallback, halves, self._onset, refines,
             self.settings,
         )  # fmt: skip
-        pace = self._pace()
         states = [problem.start(), *(saved.state for saved in done)]
-        for before, saved in zip(states, done):
-            tried = strides(self.settings) if is_dragged(saved.state) else ()
-            share, begun = landed_in(saved.state).share, slip(before, saved.state)
-            pace.repeat(saved.state.time, len(saved.iterations), share, begun, tried)
+        pace = self._pace(states, done)
         stepper: Stepper
         if problem.kinematics is not None:
             stepper = LargeSteps(problem, self.solver, control)
@@ -187,7 +180,19 @@ class Run:
         if self.solver.effort:
             self.told.note(self.solver.effort)
 
-    def _pace(self) -> Pace:
+    def _onset(self, before: State, now: State) -> Onset:
+        return onset(self.assembled.problem.pairs, before, now, weights(self.model.histories, now.time))
+
+    def _pace(self, states: Sequence[State], done: Sequence[Saved]) -> Pace:
+        """After the steps ``done``, which ended in ``states`` but for the first, that of the start."""
+        pace = self._begun()
+        for before, saved in zip(states, done):
+            tried = strides(self.settings) if is_dragged(saved.state) else ()
+            share, begun = landed_in(saved.state).share, self._onset(before, saved.state)
+            pace.repeat(saved.state.time, len(saved.iterations), share, begun, tried)
+        return pace
+
+    def _begun(self) -> Pace:
         """Before the first step. Large sliding finds its own steps; with friction or large displacements those of the user
         are taken in parts where they fail, and where there are none the onset of slip has steps of its own."""
         model, pairs, solve = self.model, self.assembled.problem.pairs, self.model.solve

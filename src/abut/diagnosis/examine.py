@@ -39,6 +39,11 @@ def check(model: Model) -> Report:
     Report
         ``findings``, the gravest first, each with severity, place, what it is and how to correct it; ``motions`` that
         supports leave free; ``status``, the exit status of `abut check`: 0 without errors.
+
+    Raises
+    ------
+    InputError
+        What is no model.
     """
     if not isinstance(model, Model):
         raise InputError(f"check: expected a model (abut.Model), got {type(model).__name__}")

@@ -19,8 +19,8 @@ class PairFrame:
 
     At current positions: past: from where slip counts, None without friction; inner: (n_facets,) not zero where functions
     of a dual space are the ordinary ones, None for nowhere, theory (P9); following: (n_functions,) which one each has its
-    pressure from, as in ``Following``, None for itself; fit: (9 n_facets,) what is added to the gaps, or None, theory
-    (G15)."""
+    pressure from, as in ``Following``, None for itself; fit: (9 n_facets,) what is added to the gaps, or None,
+    theory (G15)."""
 
     past: Past | None = None
     inner: Array | None = None
