@@ -105,6 +105,8 @@ def _value(entry: Mapping[str, Any], schema: Mapping[str, Any]) -> str:
         return " or ".join(dict.fromkeys(_value(o, schema) for o in options if o.get("type") != "null"))
     if entry.get("type") == "array":
         inner = _value(entry["items"], schema) if isinstance(entry.get("items"), dict) else ""
+        if inner.startswith("list"):
+            return f"list of lists{inner.removeprefix('list')}"
         return f"list of {inner}{'' if ' or ' in inner else 's'}" if inner else "list"
     names = {"number": "number", "integer": "whole number", "string": "text", "boolean": "true, false"}
     return names.get(entry.get("type", ""), "table")
