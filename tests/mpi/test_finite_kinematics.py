@@ -146,6 +146,12 @@ def inside_out(notes: list[str]) -> list[str]:
     return [re.sub(r"det F = \S+ at", "", note) for note in notes if "inside out" in note]
 
 
+def said(text: str) -> list[str]:
+    """Errors, without how far a drag was from coming to rest, for the same reason."""
+    lines = [line for line in text.splitlines() if line.startswith("abut: ")]
+    return [re.sub(r"not enough: .* multipliers that change", "", line) for line in lines]
+
+
 @pytest.mark.parametrize(("changes", "status"), [(FLAT, 3), (LOOSE, 4)])
 def test_a_run_that_fails(
     mpirun: Run, changes: dict[str, str], status: int, tmp_path: Path, capfd: pytest.CaptureFixture[str]
@@ -157,8 +163,7 @@ def test_a_run_that_fails(
     notes = summary(tmp_path)["notes"] if status == 3 else []
     result = mpirun(3, "run", "--quiet", path, timeout=300.0)
     assert result.returncode == status
-    said = [line for line in result.stderr.splitlines() if line.startswith("abut: ")]
-    assert said == [line for line in alone.splitlines() if line.startswith("abut: ")]
+    assert said(result.stderr) == said(alone)
     if status == 3:
         assert inside_out(notes)
         assert inside_out(notes) == inside_out(summary(tmp_path)["notes"])

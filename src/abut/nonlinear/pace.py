@@ -97,7 +97,7 @@ class Pace:
         length = max(1.0 / steps.points, steps.aim * factor) * (end - self.time)
         if not self._follows or factor >= 0.5 or length < steps.smallest * self._leg:
             return False
-        self._curve = length
+        self._curve = self._rounded(length)
         return True
 
     def take(self, iterations: int, landed: float = 0.0, onset: Onset = NO_ONSET, at: float | None = None) -> None:
@@ -112,7 +112,7 @@ class Pace:
             return
         if self._follows:
             free = first or onset.sticks <= 0.0
-            self._curve = math.inf if free else min(2.0, self._settings.aim * self._next(onset)) * taken
+            self._curve = math.inf if free else self._rounded(min(2.0, self._settings.aim * self._next(onset)) * taken)
         steps = self._settings
         hard = iterations > 2 * steps.easy
         factor = steps.growth if iterations <= steps.easy else steps.shrink if hard else 1.0
@@ -137,6 +137,12 @@ class Pace:
         if self._follows and self.end is not None and abs(self.end - time) > self._same:
             self._length, self._curve = length, time - self.time
         self.take(iterations, landed, onset, at=time)
+
+    def _rounded(self, length: float) -> float:
+        """Down to a fourth root of a power of two of the way to the next goal, lest the digits in which solvers, numbers of
+        processes and units differ make other steps."""
+        quarters = math.floor(4.0 * math.log2(length / self._leg) + 1e-6)
+        return float(self._leg * 2.0 ** (quarters / 4.0))
 
     def _next(self, onset: Onset) -> float:
         """How much longer a step may be than the one that shows an onset of slip, theory (R21)."""
