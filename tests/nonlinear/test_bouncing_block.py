@@ -17,6 +17,7 @@ from abut.nonlinear.large_steps import LargeSteps
 from abut.nonlinear.march import Control, march
 from abut.nonlinear.pace import pace_of
 from abut.problem.backend import Serial
+from abut.problem.step_error import Onset
 from abut.problem.terms import Motion, Share
 from abut.solution import Iteration
 from abut.types import Sparse
@@ -76,7 +77,7 @@ def test_iterations_are_fewer_than_published() -> None:
     model, rows = bouncing(), list[Iteration]()
     problem = finite(model)
     problem = replace(problem, terms=(laplace(model), *problem.terms[1:]))
-    control = Control(50, rows.append, _silent, _silent, _silent, _same, _silent)
+    control = Control(50, rows.append, _silent, _silent, _silent, _same, _silent, lambda *_: Onset(), _silent)
     pace = pace_of(model.solve.steps, model.solve.times, model.histories)
     attempts = list(march(LargeSteps(problem, Direct(), control), [problem.start()], pace, control))
     assert all(attempt.converged for attempt in attempts)
