@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,12 +14,12 @@ from abut.mesh.integrals import body_chunks, gradients
 from abut.mesh.mesh import Mesh
 from abut.mesh.quadrature import facet_rule, field_rule, stiffness_rule
 from abut.mesh.surface import Surface, around
+from abut.types import Array
 
 
-def _spread(surface: Surface, given: Given, rank: int, name: str = "") -> NDArray[np.float64]:
-    """int N t for a traction t, uniform or a function of position; rank 1: t itself is given, rank 2: a stress whose product
-    with the outward normal t is, rank 0: a stress that is the same in all directions."""
-    load = np.zeros(surface.points.shape)
+def facet_points(surface: Surface) -> Iterator[tuple[NDArray[np.int32], Array, Array, Array, Array]]:
+    """Integration points of the n facets of each kind: nodes (n, k), shape functions (q, k), weights (q,), normals as long
+    as the area is beside that of the reference facet (n, q, dim), coordinates (n, q, dim)."""
     for code in np.unique(surface.kinds):
         cell = CELLS[BY_CODE[code].name]
         nodes = surface.nodes[surface.kinds == code, : cell.nodes]
@@ -30,7 +30,14 @@ def _spread(surface: Surface, given: Given, rank: int, name: str = "") -> NDArra
             normal = np.stack([tangents[..., 0, 1], -tangents[..., 0, 0]], axis=-1)
         else:
             normal = np.cross(tangents[..., 0, :], tangents[..., 1, :])
-        at = np.einsum("qn,fnd->fqd", values, surface.points[nodes])
+        yield nodes, values, weights, normal, np.einsum("qn,fnd->fqd", values, surface.points[nodes])
+
+
+def _spread(surface: Surface, given: Given, rank: int, name: str = "") -> NDArray[np.float64]:
+    """int N t for a traction t, uniform or a function of position; rank 1: t itself is given, rank 2: a stress whose product
+    with the outward normal t is, rank 0: a stress that is the same in all directions."""
+    load = np.zeros(surface.points.shape)
+    for nodes, values, weights, normal, at in facet_points(surface):
         value = evaluate(given, at, name, (surface.dim,) * rank)
         if rank == 1:
             force = np.linalg.norm(normal, axis=2)[..., None] * value

@@ -8,10 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from abut._core import shape_functions
-from abut.cells import BY_CODE, CELLS
+from abut.bodies.loads import facet_points
 from abut.errors import InputError
-from abut.mesh.quadrature import facet_rule
 from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.model.spring import Spring, Table
@@ -131,22 +129,12 @@ def _line(model: Model, spring: Spring) -> Array:
 def _at_points(surface: Surface) -> tuple[Sparse, Array, Array]:
     """At the n integration points of a surface: shape functions (n, n_points), areas (n,), unit normals (n, dim)."""
     shapes, areas, normals = [], [], []
-    for code in np.unique(surface.kinds):
-        cell = CELLS[BY_CODE[code].name]
-        nodes = surface.nodes[surface.kinds == code, : cell.nodes]
-        xi, weights = facet_rule(cell.name)
-        values, derivatives = shape_functions(cell.code, np.ascontiguousarray(xi))
-        tangents = np.einsum("qna,fnd->fqad", derivatives, surface.points[nodes])
-        if surface.dim == 2:
-            normal = np.stack([tangents[..., 0, 1], -tangents[..., 0, 0]], axis=-1)
-        else:
-            normal = np.cross(tangents[..., 0, :], tangents[..., 1, :])
+    for nodes, values, weights, normal, at in facet_points(surface):
         size = np.linalg.norm(normal, axis=2)
-        at = np.einsum("qn,fnd->fqd", values, surface.points[nodes])
         n = size.size
-        column = np.repeat(nodes[:, None, :], len(xi), axis=1).reshape(n, -1)
+        column = np.repeat(nodes[:, None, :], len(weights), axis=1).reshape(n, -1)
         value = np.broadcast_to(values, (len(nodes), *values.shape)).reshape(n, -1)
-        row = np.repeat(np.arange(n), cell.nodes)
+        row = np.repeat(np.arange(n), nodes.shape[1])
         shapes.append(sp.csr_matrix((value.ravel(), (row, column.ravel())), shape=(n, len(surface.points))))
         areas.append((weights * size * surface.around(at)).ravel())
         normals.append((normal / size[..., None]).reshape(n, -1))
