@@ -164,3 +164,14 @@ inline std::vector<int> f(std::map<int, int> a, double b = g(1, 2)) {
 }
 """
     assert set(of_cpp(source)) == {("Tree", 4, 2), ("size", 1, 0), ("f", 5, 2)}
+
+
+NUMBERED = re.compile(r"(//|%)\s*[\w.]*\bdim\b|\bdim \* [^#]*[+]|\* [\w.]*\bdim [+]")
+
+
+def test_unknowns_are_numbered_in_one_file() -> None:
+    """By ``abut.dofs`` alone."""
+    assert NUMBERED.search("rows = (dim * nodes[:, None] + np.arange(dim)).ravel()")
+    assert NUMBERED.search("point = rows // self.mesh.dim")
+    found = [path.name for path in PYTHON if any(NUMBERED.search(line) for line in path.read_text().splitlines())]
+    assert found == []

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from abut.errors import InputError
 from abut.linear.choice import Direct, choose
 from abut.linear.cost_model import of_stiffness, preparing
 from abut.linear.iterative import Multigrid
@@ -22,7 +23,10 @@ if TYPE_CHECKING:
 def assembled_bodies(
     model: Model, observe: Observer, note: Callable[[str], None], clock: Clock, team: Team | None
 ) -> Backend:
-    """The stiffness of a model's bodies, assembled here or by a team."""
+    """The stiffness of a model's bodies, assembled here or by a team. Raises InputError for fields that a team does not
+    know."""
+    if team is not None and model.physics:
+        raise InputError("physics: fields beside displacements are solved on one process; start one only")
     if team is None:
         observe(Phase("assembling the stiffness"))
         return serial(model)
@@ -38,6 +42,8 @@ def assembled_bodies(
 
 def solver_kind(problem: ContactProblem, team: Team | None) -> str:
     """ "direct" or "amg": what the user asked for, or what size and abilities of the solvers suggest. Raises InputError."""
+    if problem.model.physics:
+        return "direct"
     if team is None:
         return choose(problem.model.solve.linear, problem)
     from abut.parallel.linear import choose as choose_petsc

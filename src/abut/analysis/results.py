@@ -23,8 +23,8 @@ from abut.analysis.stress_error import stress_error
 from abut.analysis.surface_stress import normal_stress
 from abut.bodies.averages import averages
 from abut.bodies.recovery import at_points, recovered
-from abut.bodies.solids import TemperatureChange
 from abut.cells import MAX_FACET_NODES
+from abut.dofs import dofs_at
 from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.model.conditions import weights
@@ -33,6 +33,7 @@ from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.settings import DEFAULT
 from abut.problem.assembly import Assembled
 from abut.problem.balance import Balance
+from abut.problem.body_terms import heated
 from abut.problem.constraints import Constraints
 from abut.problem.follower_loads import FollowerLoads
 from abut.problem.pair import Pair
@@ -55,7 +56,8 @@ NO_STRAIN = 1e-12  # nodal forces over stiffness times displacement from which d
 @dataclass(frozen=True)
 class _End:
     """A model at the end of a load step. displacement, internal, loads, reaction: (dim n_points,) without rigid motions on
-    springs, forces of stresses, of loads, of supports and links; following: those of loads that follow the deformation;
+    springs, forces of stresses, of loads, of supports and links; following: those of loads that follow the deformation,
+    and of other physics;
     locked, sprung: of preloads that are locked, of springs; pressures: (n,) of each pair; cycling: (n,) multipliers that
     keep changing; supports: of each pair int H_k over all of the deformed contactor, (n_functions,), where it may meet the
     target anywhere, else None."""
@@ -98,9 +100,7 @@ def step_result(
     points = model.mesh.points if model.small_strains else model.mesh.points + end.nodal
     points, solids = np.ascontiguousarray(points), model.deformable
     contacts = _contacts(end, attempt, before, averages(solids, sampled))
-    change = TemperatureChange(
-        model.temperatures(state.time), assembled.loaded.temperature @ weights(model.histories, state.time)
-    )
+    change = heated(model, assembled.loaded, end.motion)
     known = known_stress(model, points, end.nodal, state.time, change, list(zip(balance.pairs, contacts)))
     values = recovered(solids, points, sampled, known)
     stress = at_points(solids.patches, values, len(points))
@@ -139,7 +139,7 @@ def step_result(
         turn=_turn(model, end.nodal),
         energy=work if strained else None,
         stress_error=stress_error(solids, end.nodal, sampled, values, contacts) if strained else None,
-        remembered=remembered(solids, end.motion.history),
+        remembered={**remembered(solids, end.motion.history), **_at_nodes(model, end.motion)},
         flow=end.flow,
         preloads=_preloads(end, linked),
         springs=_springs(end),
@@ -164,13 +164,14 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
     contact_force = np.zeros_like(displacement)
     for pair, pressure in zip(balance.pairs, pressures):
         contact_force += pair.rows.T @ pressure
-    motion = Motion(state.time, displacement, state.history.of(bodies.name))
+    motion = replace(problem.motion(state.time, problem.values(state)), history=state.history.of(bodies.name))
+    motion = replace(motion, displacement=displacement)
     known = {} if turned else balance.forces
     internal = known[bodies.name] if bodies.name in known else bodies.evaluate(motion, motion).force
     following = np.zeros_like(displacement)
     for term in problem.terms:
-        if isinstance(term, FollowerLoads):
-            following -= known[term.name]
+        if isinstance(term, FollowerLoads) or term.name in problem.own:
+            following -= balance.forces[term.name][: len(following)]
     locked = np.zeros_like(displacement)
     if LockedPreloads.name in balance.forces:
         locked -= balance.forces[LockedPreloads.name]
@@ -184,6 +185,12 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
         problem, balance, state, motion, displacement, pressures, internal, loads, reaction, following, locked, sprung,
         cycling, flow(problem.model.deformable, motion.history), supports,
     )  # fmt: skip
+
+
+def _at_nodes(model: Model, motion: Motion) -> dict[str, NDArray[np.float64]]:
+    """Fields beside displacements that stand at nodes, (n_points,) or (n_points, components)."""
+    at_nodes = [field.name for field in model.dofs.fields if field.at == "nodes"]
+    return {k: v[:, 0] if v.shape[1] == 1 else v for k, v in motion.fields.items() if k in at_nodes}
 
 
 def _energy(
@@ -328,7 +335,7 @@ def _contacts(
 
 def _gives(model: Model, constraints: Constraints, pair: Pair) -> float:
     """The target's share of what both sides of a pair give way under pressure, 0 where all of it is held."""
-    rows = (model.dim * pair.target.node_ids[:, None] + np.arange(model.dim)).ravel()
+    rows = dofs_at(pair.target.node_ids, model.dim).ravel()
     held = not (constraints.free.indptr[rows + 1] > constraints.free.indptr[rows]).any()
     return 0.0 if held else scales(model, pair.contactor, pair.target).share
 

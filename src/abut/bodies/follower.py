@@ -7,6 +7,7 @@ import scipy.sparse as sp
 
 from abut._core import shape_functions
 from abut.cells import BY_CODE, CELLS
+from abut.dofs import dofs_at
 from abut.fields import Given, evaluate
 from abut.mesh.quadrature import facet_rule
 from abut.mesh.surface import Surface
@@ -53,8 +54,7 @@ def follower_pressure(
 
 def _assembled(nodes: Array, blocks: Array, size: int) -> Sparse:
     """blocks: (f, n, dim, n, dim) of the facets' nodes (f, n)."""
-    facets, n, dim = blocks.shape[:3]
-    dofs = (dim * nodes[..., None].astype(np.int64) + np.arange(dim)).reshape(facets, n * dim)
-    rows = np.repeat(dofs, n * dim, axis=1).ravel()
-    columns = np.tile(dofs, (1, n * dim)).ravel()
+    dofs = dofs_at(nodes, blocks.shape[2]).reshape(len(blocks), -1)
+    rows = np.repeat(dofs, dofs.shape[1], axis=1).ravel()
+    columns = np.tile(dofs, (1, dofs.shape[1])).ravel()
     return sp.csr_matrix((blocks.ravel(), (rows, columns)), shape=(size, size))

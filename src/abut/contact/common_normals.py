@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.coupling import Couple, CouplingOptions, IntegrationPoints
 from abut.contact.geometry import CREASE, by_kind, corner_functions, split_at_creases
+from abut.dofs import component_of, n_places, place_of
 from abut.mesh.surface import Surface
 
 NO_TILT = 1e-9  # between the normals of the two sides: rounding
@@ -47,8 +48,9 @@ def _opposite(target: Surface, normals: Array, at: IntegrationPoints) -> Array:
     """The target's unit normal at each integration point, (n, dim), which points to the contactor."""
     n, dim = at.normal.shape
     entries = at.gap_operator.tocoo()
-    along = -entries.data * at.normal[entries.row, entries.col % dim]
-    shapes = sp.csr_matrix((along, (entries.row, entries.col // dim)), shape=(n, at.gap_operator.shape[1] // dim))
+    along = -entries.data * at.normal[entries.row, component_of(entries.col, dim)]
+    shape = n, n_places(at.gap_operator.shape[1], dim)
+    shapes = sp.csr_matrix((along, (entries.row, place_of(entries.col, dim))), shape=shape)
     nodes = target.nodes[at.target_facet]
     point, local = np.nonzero(nodes >= 0)
     first = shapes.shape[1] - len(target.points)  # surfaces of one mesh share their points, else the target's come last

@@ -18,6 +18,7 @@ from abut._core import couple_surfaces, plan_facets
 from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.geometry import Smoothing, by_kind, facet_sizes, is_plane, nodal_normals, turning_within
 from abut.contact.quadrature import moment_tolerance, rule_tables
+from abut.dofs import dofs_at, n_dofs
 from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.types import Array, Json, Sparse
@@ -339,21 +340,21 @@ def point_columns(contactor: Surface, target: Surface) -> tuple[int, int]:
 def _matrix(entries: tuple[Array, ...], rows: int, n_points: int, offset: int) -> Sparse:
     row, column, value = entries
     width = value.shape[1]
-    columns = (width * (offset + column[:, None].astype(np.int64)) + np.arange(width)).ravel()
-    return sp.csr_matrix((value.ravel(), (np.repeat(row, width), columns)), shape=(rows, width * n_points))
+    columns = dofs_at(offset + column.astype(np.int64), width).ravel()
+    return sp.csr_matrix((value.ravel(), (np.repeat(row, width), columns)), shape=(rows, n_dofs(n_points, width)))
 
 
 def _points(raw: dict[str, Array], contactor: Surface, target: Surface) -> IntegrationPoints:
     n, dim = raw["point_normal"].shape
     offset, n_points = point_columns(contactor, target)
-    operator = sp.csr_matrix((n, dim * n_points))
+    operator = sp.csr_matrix((n, n_dofs(n_points, dim)))
     for surface, name, sign, first in ((contactor, "contactor", 1.0, 0), (target, "target", -1.0, offset)):
         facet = raw[f"point_{name}_facet"]
         nodes = surface.nodes[facet]
         used = nodes >= 0
         row = np.nonzero(used)[0]
         value = sign * raw[f"point_{name}"][used][:, None] * raw["point_normal"][row]
-        column = dim * (first + nodes[used][:, None].astype(np.int64)) + np.arange(dim)
+        column = dofs_at(first + nodes[used].astype(np.int64), dim)
         operator = operator + sp.csr_matrix(
             (value.ravel(), (np.repeat(row, dim), column.ravel())), shape=operator.shape
         )

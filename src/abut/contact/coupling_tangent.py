@@ -21,6 +21,7 @@ from abut.contact.block_rows import CompressedRows, block_rows, in_place, interl
 from abut.contact.coupling import CouplingOptions, check_pair, cutting_arguments, point_columns
 from abut.contact.geometry import Smoothing
 from abut.contact.moving_normals import MovingNormals, normal_pattern
+from abut.dofs import n_places
 from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.types import Array, Json, Sparse
@@ -74,8 +75,8 @@ class CouplingTangent:
         """(9 n_facets, dim n_points) in blocks, derivative of so much of int H_k g and of int H_k, (2,)."""
         normals, points = ((shares @ parts[0])[:, None] for parts in (self.by_normals, self.by_points))
         dim = points.shape[2]
-        by_normals = block_rows(in_place(normals, self.by_normals), self.turning.shape[0] // dim)
-        by_points = block_rows(in_place(points, self.by_points), self.turning.shape[1] // dim)
+        by_normals = block_rows(in_place(normals, self.by_normals), n_places(self.turning.shape[0], dim))
+        by_points = block_rows(in_place(points, self.by_points), n_places(self.turning.shape[1], dim))
         return by_points + by_normals @ self.turning
 
 
@@ -147,7 +148,7 @@ def of_facets(
 def assembled(parts: Sequence[Json], turning: Sparse) -> CouplingTangent:
     """The whole from what disjoint facets have in it. turning: as in ``CouplingTangent``."""
     dim = parts[0]["load"].shape[1]
-    points, normals = turning.shape[1] // dim, turning.shape[0] // dim
+    normals, points = (n_places(n, dim) for n in turning.shape)
     loaded, load = (np.concatenate([part[name] for part in parts]) for name in ("loaded", "load"))
     force = np.stack([np.bincount(loaded, along, points).astype(float) for along in load.T], axis=1)
     by_points, by_normals = (

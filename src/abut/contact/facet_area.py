@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from abut._core import shape_functions
 from abut.cells import CELLS
 from abut.contact.geometry import by_kind
+from abut.dofs import dofs_at, n_dofs
 from abut.mesh.quadrature import gauss_rule
 from abut.mesh.surface import Surface
 from abut.types import Sparse
@@ -22,12 +23,12 @@ def area_change(surface: Surface, facets: NDArray[np.int64]) -> Sparse:
     for kind, of_kind in by_kind(surface):
         here = np.flatnonzero(np.isin(facets, of_kind))
         nodes = surface.nodes[facets[here], : CELLS[kind].nodes].astype(np.int64)
-        column = dim * nodes[:, :, None] + np.arange(dim)
+        column = dofs_at(nodes, dim)
         rows.append(np.broadcast_to(here[:, None, None], column.shape).ravel())
         columns.append(column.ravel())
         values.append(_rates(surface, kind, surface.points[nodes]).ravel())
     entries = np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))
-    return sp.csr_matrix(entries, shape=(len(facets), dim * len(surface.points)))
+    return sp.csr_matrix(entries, shape=(len(facets), n_dofs(len(surface.points), dim)))
 
 
 def _rates(surface: Surface, kind: str, x: NDArray[np.float64]) -> NDArray[np.float64]:

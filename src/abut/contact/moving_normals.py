@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from abut._core import shape_functions
 from abut.cells import CELLS
+from abut.contact.block_rows import block_rows
 from abut.contact.geometry import (
     REFERENCE_AREA,
     Smoothing,
@@ -36,9 +37,7 @@ class MovingNormals:
 
     def turning(self, n_points: int) -> Sparse:
         """The derivatives by all points, (dim m, dim n_points) in blocks."""
-        value, _, start = self.blocks
-        dim = value.shape[1]
-        return sp.bsr_matrix(self.blocks, shape=(dim * (len(start) - 1), dim * n_points))
+        return block_rows(self.blocks, n_points)
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,7 @@ from abut.contact.geometry import (
     pressure_kind,
     split_at_creases,
 )
+from abut.dofs import n_components, place_of
 from abut.mesh.surface import Surface
 from abut.types import Sparse
 
@@ -190,9 +191,11 @@ def carry_to_target(
     least of the facet; pairs: (9 n_contactor_facets, n_points or dim n_points) sparse ``target_part`` of the coupling: it
     knows which contactor facets see which target nodes.
     """
-    width = pairs.shape[1] // len(target.points) if pairs.shape[1] >= len(target.points) else 1
+    width = max(n_components(pairs.shape[1], len(target.points)), 1)
     entries = pairs.tocoo()
-    facet_and_point = np.unique(entries.row // MAX_FACET_NODES * np.int64(len(target.points)) + entries.col // width)
+    facet_and_point = np.unique(
+        entries.row // MAX_FACET_NODES * np.int64(len(target.points)) + place_of(entries.col, width)
+    )
     seen = np.stack(np.divmod(facet_and_point, len(target.points)), axis=1)
     best = np.full(len(target.points), np.inf)
     pressure = np.zeros(len(target.points))

@@ -20,6 +20,7 @@ from abut.contact.bulge import at_reference
 from abut.contact.coupling import Coupling, default_reach, no_gap, surface_degree
 from abut.contact.geometry import by_kind, facet_sizes, full_moments, nodal_normals, node_coordinates
 from abut.contact.pressure_space import PressureSpace, facet_functions
+from abut.dofs import dofs_at, n_dofs
 from abut.mesh.surface import Surface
 from abut.types import Sparse
 
@@ -54,7 +55,7 @@ def node_to_segment(
 
     dim, same = contactor.dim, contactor.points is target.points
     offset = 0 if same else len(contactor.points)
-    shape = (MAX_FACET_NODES * len(contactor), dim * (len(contactor.points) + (0 if same else len(target.points))))
+    shape = (MAX_FACET_NODES * len(contactor), n_dofs(len(contactor.points) + (0 if same else len(target.points)), dim))
     force = -normal * area[:, None]  # along N, from target to contactor
     near = _rows(row[first][seen], ids[seen, None], np.ones((len(seen), 1)), force[seen], shape)
     nodes = target.nodes[facet[seen]]
@@ -82,7 +83,7 @@ def _rows(
     used = nodes >= 0
     k = np.nonzero(used)[0]
     value = shapes[used][:, None] * force[k]
-    column = dim * nodes[used][:, None] + np.arange(dim)
+    column = dofs_at(nodes[used], dim)
     return sp.csr_matrix((value.ravel(), (np.repeat(row[k], dim), column.ravel())), shape=shape)
 
 

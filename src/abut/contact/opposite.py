@@ -12,6 +12,7 @@ from scipy.sparse.csgraph import connected_components, dijkstra
 
 from abut.cells import MAX_FACET_NODES
 from abut.contact.coupling import Coupling
+from abut.dofs import n_components, place_of
 from abut.mesh.surface import Surface
 
 
@@ -22,8 +23,8 @@ def by_target(contactor: Surface, target: Surface, coupling: Coupling) -> Surfac
         return contactor
     piece = _pieces(target)
     part = coupling.target_part.tocoo()
-    width = coupling.target_part.shape[1] // len(target.points)
-    area = sp.csr_matrix((np.abs(part.data), (part.row // MAX_FACET_NODES, piece[part.col // width])))
+    width = n_components(coupling.target_part.shape[1], len(target.points))
+    area = sp.csr_matrix((np.abs(part.data), (part.row // MAX_FACET_NODES, piece[place_of(part.col, width)])))
     area.resize(len(contactor), int(piece.max()) + 1)
     if (np.asarray(area.sum(axis=0)).ravel() > 0.0).sum() < 2:
         return contactor

@@ -10,6 +10,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.contact.coupling import IntegrationPoints
+from abut.dofs import component_of, dofs_at, n_dofs, n_places, place_of
 from abut.mesh.surface import Surface
 from abut.types import Sparse
 
@@ -37,7 +38,7 @@ def slip_operators(at: IntegrationPoints, points: Array) -> SlipOperators:
 def target_operators(at: IntegrationPoints, target: Surface) -> SlipOperators:
     """The target's part alone: what tractions do to it, where it has points in common with the contactor."""
     entries = at.gap_operator.tocoo()
-    node = entries.col // at.normal.shape[1]
+    node = place_of(entries.col, at.normal.shape[1])
     theirs = (target.nodes[at.target_facet[entries.row]] == node[:, None]).any(axis=1)
     part = sp.coo_matrix((entries.data[theirs], (entries.row[theirs], entries.col[theirs])), shape=entries.shape)
     return SlipOperators(_along(at, part), None)
@@ -47,9 +48,9 @@ def _along(at: IntegrationPoints, entries: Sparse) -> tuple[Sparse, ...]:
     """entries: of ``at.gap_operator``, all or some."""
     normal = at.normal
     dim = normal.shape[1]
-    along = entries.data * normal[entries.row, entries.col % dim]
+    along = entries.data * normal[entries.row, component_of(entries.col, dim)]
     shapes = sp.csr_matrix(  # of the contactor, minus those of the target: the normal part of each, put together
-        (along, (entries.row, entries.col // dim)), shape=(len(normal), entries.shape[1] // dim)
+        (along, (entries.row, place_of(entries.col, dim))), shape=(len(normal), n_places(entries.shape[1], dim))
     )
     if dim == 2:
         fields = [turned(normal)]
@@ -70,8 +71,8 @@ def _integrated(at: IntegrationPoints, shapes: Sparse, field: Array) -> Sparse:
     dim, parts = field.shape[1], []
     for a in range(dim):
         scalar = (at.pressure.T @ sp.diags(at.weight * field[:, a]) @ shapes).tocoo()
-        where = scalar.row, dim * scalar.col + a
-        parts.append(sp.csr_matrix((scalar.data, where), shape=(scalar.shape[0], dim * scalar.shape[1])))
+        where = scalar.row, dofs_at(scalar.col, dim)[:, a]
+        parts.append(sp.csr_matrix((scalar.data, where), shape=(scalar.shape[0], n_dofs(scalar.shape[1], dim))))
     return sum(parts[1:], parts[0])
 
 

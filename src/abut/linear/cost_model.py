@@ -15,6 +15,7 @@ import numpy as np
 
 from abut.cells import CELLS
 from abut.contact.geometry import by_kind, nodal_normals
+from abut.dofs import n_dofs
 from abut.linear.static_condensation import LARGEST
 from abut.mesh.mesh import Mesh
 from abut.mesh.shapes import ratios
@@ -176,7 +177,7 @@ def _fronts(mesh: Mesh, body: str) -> float:
     """Operations of nested dissection: as many fronts as cross-sections that cut the body into cubes, each to the third."""
     nodes, dim = mesh.nodes_of(body), mesh.dim
     extent = np.ptp(mesh.points[nodes], axis=0)
-    n = float(dim * len(nodes))
+    n = float(n_dofs(len(nodes), dim))
     slender = float(extent.prod()) ** (1.0 / dim) / float(extent.max())
     section = n ** ((dim - 1) / dim) * slender
     return n * section ** (1.0 if dim == 2 else 1.5)

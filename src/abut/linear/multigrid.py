@@ -10,6 +10,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut._core import block_product, padded_blocks
+from abut.dofs import dofs_at, n_dofs, n_places, place_of
 from abut.errors import InputError
 from abut.linear.multigrid_cycle import Level, Levels, coarse_matrix, inverse, level
 from abut.linear.strength import means, near
@@ -44,7 +45,7 @@ def hierarchy(stiffness: Sparse, free: Sparse, motions: NDArray[np.float64], poi
     slot, own = slot[order], own[order]
     whole = len(own) == free.shape[1] and (np.diff(own) == 1).all()
     part = stiffness if whole else stiffness[own][:, own].tocsr()
-    size, scale = dim * len(point), float(np.median(part.diagonal()))
+    size, scale = n_dofs(len(point), dim), float(np.median(part.diagonal()))
     fine = _padded(part, slot, size, dim, scale)
     near_null = np.zeros((size, motions.shape[1]))
     near_null[slot] = motions[own]
@@ -103,7 +104,7 @@ def _padded(stiffness: Sparse, slot: NDArray[np.int64], size: int, dim: int, sca
     rows = stiffness if stiffness.has_sorted_indices else stiffness.sorted_indices()
     indptr, indices, blocks = padded_blocks(
         rows.indptr.astype(np.int32), rows.indices.astype(np.int32, copy=False), rows.data, slot.astype(np.int32), dim,
-        size // dim, 1.0 / scale,
+        n_places(size, dim), 1.0 / scale,
     )  # fmt: skip
     return sp.bsr_matrix((blocks.reshape(-1, dim, dim), indices, indptr), shape=(size, size))
 
@@ -112,7 +113,7 @@ def wide(free: Sparse, dim: int) -> NDArray[np.bool_]:
     """(n_free,) which free displacements move many points, as those of a rigid body do."""
     entries = free.tocoo()
     point = sp.csr_matrix(
-        (np.ones(entries.nnz), (entries.col, entries.row // dim)), shape=(free.shape[1], free.shape[0])
+        (np.ones(entries.nnz), (entries.col, place_of(entries.row, dim))), shape=(free.shape[1], free.shape[0])
     )
     return np.diff(point.indptr) > FEW
 
@@ -122,7 +123,7 @@ def slots(free: Sparse, dim: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]
     block. What moves one point is in that point's block; what moves several is alone in one, at the first of them."""
     columns = free.tocsc()
     sizes = np.diff(columns.indptr)
-    of_entries = columns.indices.astype(np.int64) // dim
+    of_entries = place_of(columns.indices.astype(np.int64), dim)
     first = np.minimum.reduceat(of_entries, columns.indptr[:-1]) if len(sizes) else of_entries
     last = np.maximum.reduceat(of_entries, columns.indptr[:-1]) if len(sizes) else of_entries
     alone = np.where(first == last, 0, 1 + np.arange(len(sizes)))
@@ -131,4 +132,4 @@ def slots(free: Sparse, dim: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]
     order = np.argsort(number, kind="stable")
     local = np.empty(len(number), dtype=np.int64)
     local[order] = np.arange(len(number)) - np.repeat(np.cumsum(count) - count, count)
-    return dim * number + local, points
+    return dofs_at(number, dim)[np.arange(len(number)), local], points

@@ -25,6 +25,7 @@ from abut.contact.sides import (
     moving_sides,
     words,
 )
+from abut.dofs import Dofs
 from abut.errors import InputError
 from abut.materials.material import Material
 from abut.mesh.check import check_entries
@@ -35,6 +36,7 @@ from abut.model.consistency import check_equations, check_filled, check_loads, c
 from abut.model.contact import GEOMETRIES, Contact
 from abut.model.coupling import Coupling, check_couplings, moving_points
 from abut.model.kinematics import check_finite, check_kinematics
+from abut.model.physics import TEMPERATURE, Physics, dofs_of
 from abut.model.preload import Preload, cut_sections
 from abut.model.probe import Probe, check_probes
 from abut.model.rotation import Rotation, check_rotations
@@ -90,6 +92,8 @@ class Model:
         Bolts that are tightened; the mesh is cut open at their sections.
     springs : sequence of Spring
         To the ground, between points, and beds under surfaces.
+    physics : sequence of abut.model.physics.Physics
+        Fields beside displacements, with terms of their own in the balance; on one process, with the direct solver.
 
     Raises
     ------
@@ -130,6 +134,7 @@ class Model:
     couplings: Sequence[Coupling] = ()
     preloads: Sequence[Preload] = ()
     springs: Sequence[Spring] = ()
+    physics: Sequence[Physics] = ()
 
     def __post_init__(self) -> None:
         for name in (
@@ -144,6 +149,7 @@ class Model:
             "couplings",
             "preloads",
             "springs",
+            "physics",
         ):
             object.__setattr__(self, name, checks.listed(getattr(self, name), name))
         check_entries(self.mesh)
@@ -163,6 +169,7 @@ class Model:
         if self.finite:
             check_finite(self.mesh, self.contacts, self.equations, moving, self.supports)
         check_equations(self.mesh, self.equations)
+        self.dofs  # noqa: B018 - names are there once
         check_probes(self.probes, self.mesh, [contact.name for contact in self.contacts])
 
     @property
@@ -195,6 +202,16 @@ class Model:
         """2 or 3, the mesh's."""
         return int(self.mesh.points.shape[1])
 
+    @cached_property
+    def dofs(self) -> Dofs:
+        """Where the values of all fields stand."""
+        return dofs_of(self.mesh, self.physics)
+
+    @property
+    def linear_bodies(self) -> bool:
+        """Whether forces of bodies are affine in the displacements, and depend on nothing else that is unknown."""
+        return self.deformable.constant and TEMPERATURE not in [field.name for field in self.dofs.fields]
+
     @property
     def referenced(self) -> tuple[Rigid | Coupling, ...]:
         """What has a reference point: rigid bodies, then couplings."""
@@ -209,7 +226,8 @@ class Model:
         amplitudes = [item.amplitude for item in given] + [coupling.amplitude for coupling in self.couplings]
         friction = (contact.friction_amplitude for contact in self.contacts)
         of_rigid = (history for body in self.referenced for history in body.amplitudes.values())
-        return tuple(dict.fromkeys([None, *amplitudes, *friction, *of_rigid]))
+        others = (history for item in self.physics for history in item.amplitudes)
+        return tuple(dict.fromkeys([None, *amplitudes, *friction, *of_rigid, *others]))
 
     @cached_property
     def ends(self) -> tuple[float, ...]:

@@ -113,7 +113,9 @@ def report(
         iteration=count,
         active=points(system, state.closed),
         changed=changed,
-        residual=float(np.abs(residual).max(initial=0.0) / largest_force(system, state, internal, increment)),
+        residual=float(
+            np.abs(system.relative(residual, largest_force(system, state, internal, increment))).max(initial=0.0)
+        ),
         contact_residual=_relative(violation, largest_pressure(state, increment)),
         penetration=max(depth, default=0.0),
         seconds=seconds,

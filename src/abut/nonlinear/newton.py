@@ -74,4 +74,4 @@ def newton(
 def _unbalanced(system: Linearised, state: State, increment: Increment) -> float:
     internal = system.internal(state)
     largest = largest_force(system, state, internal, increment)
-    return float(np.abs(system.unbalanced(state, internal)).max(initial=0.0)) / largest
+    return float(np.abs(system.relative(system.unbalanced(state, internal), largest)).max(initial=0.0))

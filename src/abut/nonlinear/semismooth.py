@@ -270,7 +270,7 @@ def _judged(step: Step, own: Linearised, state: State, guessed: bool = False) ->
     so_far = largest_of(system, state, step.increment)
     modulus = max((pair.stiffness * pair.size for pair in system.pairs), default=1.0)
     forces, pressures = max(so_far.force, NOTHING), max(so_far.pressure, step.settings.newton.faint * modulus)
-    left = system.unbalanced(state) / forces
+    left = system.relative(system.unbalanced(state), forces)
     law = left_open(system, laws, step.asked) / pressures
     return Trial(
         own, system, state, laws, left, law, float(np.linalg.norm(left) + np.linalg.norm(law)), changed,

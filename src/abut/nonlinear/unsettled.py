@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.dofs import place_of
 from abut.materials.elastic import LinearElastic
 from abut.nonlinear.hanging import cured, place
 from abut.nonlinear.settings import Settings
@@ -31,7 +32,7 @@ def most_at(problem: ContactProblem, forces: Vector, laws: Vector) -> str:
     force, law = (np.abs(part) for part in (forces, laws))
     if not problem.pairs or law.max(initial=0.0) < force.max(initial=0.0):
         free = problem.constraints.free
-        point = int(np.argmax(abs(free) @ force)) // problem.model.mesh.dim
+        point = int(place_of(np.argmax(abs(free) @ force), problem.model.dim))
         return f"most at {place(problem, point)} in the undeformed mesh"
     pair, part = max(zip(problem.pairs, problem.split(law)), key=lambda each: float(each[1].max(initial=0.0)))
     by_function = np.where(pair.index >= 0, part[np.maximum(pair.index, 0)], 0.0).max(axis=1)

@@ -16,6 +16,7 @@ from abut.bodies.stress import PointStress
 from abut.contact.coupling import Coupling, CouplingOptions
 from abut.contact.coupling_tangent import ContactLoad, CouplingTangent
 from abut.contact.moving_normals import MovingNormals
+from abut.dofs import dofs_at, n_dofs
 from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.parallel import part
@@ -72,7 +73,7 @@ class DistributedBodies:
         """Values (dim n_points, ...) at the points of each process."""
         dim = self.model.dim
         nodal = values.reshape(-1, dim, *values.shape[1:])
-        return [nodal[piece.points].reshape(dim * len(piece.points), *values.shape[1:]) for piece in self.pieces]
+        return [nodal[piece.points].reshape(n_dofs(len(piece.points), dim), *values.shape[1:]) for piece in self.pieces]
 
     def summed(self, shares: Sequence[NDArray[np.float64]], like: NDArray[np.float64]) -> NDArray[np.float64]:
         """Back again, sums where points belong to several; like: values at all points."""
@@ -103,7 +104,7 @@ class DistributedBodies:
             places = layout(constraints.free, self.points, dim, self.team.size, constraints.coupled)
         arguments = []
         for piece in self.pieces:
-            rows = constraints.free[(dim * piece.points[:, None] + np.arange(dim)).ravel()].tocsc()
+            rows = constraints.free[dofs_at(piece.points, dim).ravel()].tocsc()
             used = np.flatnonzero(np.diff(rows.indptr))
             used = used[np.argsort(places.slot[used])]
             arguments.append((places.slot[used], rows[:, used].tocsr()))

@@ -15,6 +15,7 @@ from abut.contact.coupling import couple as couple_here
 from abut.contact.coupling_tangent import ContactLoad, CouplingTangent, assembled, of_facets
 from abut.contact.merging import added
 from abut.contact.moving_normals import MovingNormals
+from abut.dofs import component_of, dofs_at, n_dofs, place_of
 from abut.errors import AbutError
 from abut.mesh.surface import Surface
 from abut.parallel.team import Store, Team
@@ -65,12 +66,14 @@ def differentiate(
     n, dim = len(contactor.points), contactor.dim
     made = assembled(parts, few)
     tangent = made.force_tangent.tocoo()
-    row, along = (dim * points[index // dim] + index % dim for index in (tangent.row, tangent.col))
+    row, along = (
+        dofs_at(points, dim)[place_of(index, dim), component_of(index, dim)] for index in (tangent.row, tangent.col)
+    )
     force = np.zeros((n, dim))
     force[points] = made.force.reshape(-1, dim)
     return replace(
         made, force=force.ravel(), turning=normals.turning(n),
-        force_tangent=sp.csr_matrix((tangent.data, (row, along)), shape=(dim * n,) * 2),
+        force_tangent=sp.csr_matrix((tangent.data, (row, along)), shape=(n_dofs(n, dim),) * 2),
         operators=_columns(made.operators, points), by_points=_columns(made.by_points, points),
     )  # fmt: skip
 
@@ -103,9 +106,9 @@ def _over(surface: Surface, points: NDArray[np.int64], coordinates: NDArray[np.f
 
 def _among_all(matrix: Sparse, points: NDArray[np.int64], width: int, n_points: int) -> Sparse:
     """A matrix with ``width`` columns for each of some points, as one with columns for all points."""
-    place = (width * points[:, None] + np.arange(width)).ravel()
+    place = dofs_at(points, width).ravel()
     rows = matrix.tocsr()
-    return sp.csr_matrix((rows.data, place[rows.indices], rows.indptr), shape=(rows.shape[0], width * n_points))
+    return sp.csr_matrix((rows.data, place[rows.indices], rows.indptr), shape=(rows.shape[0], n_dofs(n_points, width)))
 
 
 def _couple(

@@ -10,6 +10,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.dofs import place_of
 from abut.linear.multigrid import slots
 from abut.mesh.cell_block import CellBlock
 from abut.mesh.exterior import facets_of, numbered
@@ -146,7 +147,7 @@ def layout(free: Sparse, owner: NDArray[np.int64], dim: int, size: int, coupled:
     filled up to ``dim`` places, unless columns are ``coupled``: those go with their first point, one place each."""
     columns = free.tocsc()
     columns.sort_indices()
-    point = columns.indices[columns.indptr[:-1]].astype(np.int64) // dim
+    point = place_of(columns.indices[columns.indptr[:-1]].astype(np.int64), dim)
     block = 1 if coupled else dim
     slot, blocks = (np.arange(len(point)), point) if coupled else slots(free, dim)
     process = np.empty(len(blocks), dtype=np.int64)

@@ -11,7 +11,7 @@ from abut.problem.discretised import Discretised, unit_of
 from abut.problem.frame import Frame, PairFrame
 from abut.problem.linearised import Linearised
 from abut.problem.pair import TOUCHING
-from abut.problem.terms import Motion
+from abut.problem.terms import added_up
 from abut.solution.state import State
 
 Array = NDArray[np.float64]
@@ -46,10 +46,10 @@ def frame(problem: Discretised, before: State) -> Frame:
 
 def linearised(problem: Discretised, before: State, frame: Frame, now: State) -> Linearised:
     """The problem near the state ``now``."""
-    there, here = (Motion(state.time, problem.displacement(state)) for state in (before, now))
+    there, here = (problem.motion(state.time, problem.values(state)) for state in (before, now))
     shares = problem.shares(before, there, here)
     factors = weights(problem.model.histories, now.time)
-    force = problem.constraints.free.T @ np.asarray(sum(share.force for share in shares))
+    force = problem.constraints.forces(added_up([share.force for share in shares], len(problem.values(now))))
     if problem.stiffness is not None:
         stiffness, load = problem.stiffness, -force
     else:
@@ -60,6 +60,8 @@ def linearised(problem: Discretised, before: State, frame: Frame, now: State) ->
         now.time, factors, stiffness, load, problem.pairs, problem.operator, _offset(problem, factors, frame),
         problem.motions, problem.restraint, load, problem.unit or unit_of(stiffness),
         shares={} if problem.stiffness is not None else problem.named(shares),
+        sizes=problem.sizes(shares, (before, now), stiffness),
+        even=problem.constraints.others is None or all(share.symmetric for share in shares),
     )  # fmt: skip
 
 

@@ -25,6 +25,7 @@ from abut.problem.free_modes import free_mode_springs
 from abut.problem.kinematics import Kinematics
 from abut.problem.loads import Loads, followers, loads
 from abut.problem.neutral_motions import neutral_motions
+from abut.problem.other_fields import other_fields
 from abut.problem.pair import Pair
 from abut.problem.preloads import LockedPreloads
 from abut.problem.problem import ContactProblem
@@ -46,7 +47,8 @@ class Assembled:
 
 def prescribed(model: Model) -> tuple[Constraints, Loads]:
     """What holds and what loads a model. Raises InputError and SingularModelError for what contradicts itself."""
-    return supports(model), loads(model)
+    constraints = supports(model)
+    return constraints.with_others(other_fields(model, constraints.free.shape[1])), loads(model)
 
 
 def assemble(
@@ -85,12 +87,12 @@ def assemble(
     _check_finite(reduced.diagonal(), loaded.forces)
     n_free = reduced.shape[0]
     bodies: Bodies
-    if model.deformable.constant:
+    if model.linear_bodies:
         bodies = LinearBodies(backend, loaded, model.histories, model.temperatures)
     else:
         bodies = SolidBodies(model, loaded, backend)
-    beside = [*_beside(model, constraints, loaded), *([sprung] if sprung else [])]
-    affine = not model.finite and _is_constant(model, [bodies, *beside])
+    beside = [*_beside(model, constraints, loaded), *([sprung] if sprung else []), *_own(model)]
+    affine = not (model.finite or model.physics) and _is_constant(model, [bodies, *beside])
     problem = ContactProblem(
         model=model,
         terms=(bodies, *beside),
@@ -133,6 +135,11 @@ def _beside(model: Model, constraints: Constraints, loaded: Loads) -> list[Term]
         terms.append(FollowerLoads(model, constraints.bodies))
     locked = LockedPreloads.of(model)
     return terms if locked is None else [*terms, locked]
+
+
+def _own(model: Model) -> list[Term]:
+    """Terms of physics beside displacements."""
+    return [term for item in model.physics for term in item.terms(model, model.dofs)]
 
 
 def _describe(pairs: Sequence[Pair], note: Callable[[str], None]) -> None:

@@ -15,6 +15,7 @@ from abut.bodies.stress import PointStress
 from abut.model import History as Amplitude
 from abut.model import Model
 from abut.model.conditions import weights
+from abut.model.physics import TEMPERATURE
 from abut.problem.backend import Backend
 from abut.problem.loads import Loads
 from abut.problem.terms import Motion, Share, Term
@@ -78,9 +79,16 @@ class SolidBodies:
     def _at(
         self, motion: Motion, history: Mapping[str, Vector]
     ) -> tuple[Vector, TemperatureChange, Mapping[str, Vector] | None]:
-        temperature = self.loads.temperature @ weights(self.model.histories, motion.time)
-        change = TemperatureChange(self.model.temperatures(motion.time), temperature)
-        return motion.displacement.reshape(len(temperature), -1), change, history or None
+        change = heated(self.model, self.loads, motion)
+        return motion.displacement.reshape(self.model.mesh.points.shape), change, history or None
+
+
+def heated(model: Model, loads: Loads, motion: Motion) -> TemperatureChange:
+    """The change of temperature of bodies: what loads prescribe, and a field of temperatures."""
+    temperature = loads.temperature @ weights(model.histories, motion.time)
+    if TEMPERATURE in motion.fields:
+        temperature = temperature + motion.fields[TEMPERATURE][:, 0]
+    return TemperatureChange(model.temperatures(motion.time), temperature)
 
 
 @dataclass(frozen=True)

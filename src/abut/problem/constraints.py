@@ -12,11 +12,13 @@ from numpy.typing import NDArray
 
 from abut._core import principal_submatrix
 from abut.contact.geometry import nodal_normals
+from abut.dofs import dofs_at, n_dofs, n_places, place_of
 from abut.errors import SingularModelError
 from abut.fields import evaluate
 from abut.mesh.mesh import Mesh
 from abut.model import Model, Support
-from abut.problem.elimination import eliminate, row_products
+from abut.problem.elimination import Links, eliminate, row_products
+from abut.problem.other_fields import OtherFields, widened
 from abut.problem.rigid_bodies import RigidBody, body_rows, rigid_bodies
 from abut.problem.sections import shortenings_of
 from abut.problem.turns import Turn, Turns, about
@@ -32,29 +34,11 @@ SAME_DIRECTION = 1e-6  # sine of the angle below which two held directions count
 
 
 @dataclass(frozen=True)
-class Links:
-    """What the forces of equations follow from. outer: (dim n_points, n) the unknowns before equations; matrix: (m, m) the
-    coefficients of the m constraints that were eliminated, at the unknowns ``pivots`` they were solved for; equations:
-    (m, dim n_points) coefficients on all displacements of those that are equations."""
-
-    outer: Sparse
-    matrix: Sparse
-    pivots: NDArray[np.int64]
-    equations: Sparse
-
-    def forces(self, residual: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The share of equations in the forces (dim n_points,) that hold the points."""
-        if not len(self.pivots):
-            return np.zeros_like(residual)
-        multipliers = spla.splu(self.matrix.T.tocsc()).solve((self.outer.T @ residual)[self.pivots])
-        return np.asarray(self.equations.T @ multipliers)
-
-
-@dataclass(frozen=True)
 class Constraints:
     """free: (dim n_points, n_free) sparse, its columns ``orthonormal`` unless equations or rigid bodies take part;
     ``coupled``: a column moves several points; prescribed: (dim n_points, n_histories); largest: displacement prescribed
-    at any time; bodies: the rigid ones; links: where there are equations; turns: finite ones, None without."""
+    at any time; bodies: the rigid ones; links: where there are equations; turns: finite ones, None without;
+    others: fields, None without, whose unknowns come after the free displacements."""
 
     free: Sparse
     prescribed: NDArray[np.float64]
@@ -64,6 +48,22 @@ class Constraints:
     bodies: Sequence[RigidBody] = ()
     links: Links | None = None
     turns: Turns | None = None
+    others: OtherFields | None = None
+
+    def with_others(self, others: OtherFields | None) -> Constraints:
+        """With fields beside displacements."""
+        if others is None:
+            return self
+        n = others.free.shape[1]
+        turns = None if self.turns is None else self.turns.widened(n)
+        return replace(self, free=widened(self.free, n), turns=turns, others=others)
+
+    def forces(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """On the unknowns, (n_free,), by forces (n_values,) on the values of all fields."""
+        if self.others is None:
+            return np.asarray(self.free.T @ values)
+        n = self.free.shape[0]
+        return np.asarray(self.free.T @ values[:n] + self.others.free.T @ values[n:])
 
     def displacement(self, free: NDArray[np.float64], factors: NDArray[np.float64]) -> NDArray[np.float64]:
         """Of all points, (dim n_points,), by the free displacements and the factors of the histories."""
@@ -86,9 +86,9 @@ class Constraints:
         """Whether a free displacement moves one of ``points`` (n,) and others with it."""
         if not self.coupled:
             return False
-        columns = self.free[(dim * points[:, None] + np.arange(dim)).ravel()].indices
+        columns = self.free[dofs_at(points, dim).ravel()].indices
         entries = self.free.tocsc()[:, np.unique(columns)].tocoo()
-        moved = np.unique(np.column_stack([entries.col, entries.row // dim]), axis=0)
+        moved = np.unique(np.column_stack([entries.col, place_of(entries.row, dim)]), axis=0)
         return bool(np.bincount(moved[:, 0]).max(initial=0) > 1)
 
     def coordinates(self, vectors: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -96,7 +96,10 @@ class Constraints:
         moved = self.free.T @ vectors
         if self.orthonormal or not moved.size:
             return np.asarray(moved)
-        return np.asarray(spla.splu((self.free.T @ self.free).tocsc()).solve(moved))
+        moves = slice(self.free.shape[1]) if self.others is None else np.diff(self.free.tocsc().indptr) > 0
+        free = self.free[:, moves]
+        moved[moves] = spla.splu((free.T @ free).tocsc()).solve(moved[moves])
+        return np.asarray(moved)
 
     def taken(self, vectors: NDArray[np.float64]) -> NDArray[np.float64]:
         """What is left of displacements of all points (dim n_points, k) that no free ones can follow, where that may not be
@@ -107,11 +110,16 @@ class Constraints:
         followed[single] = alone[self.free.indices[self.free.indptr[single]]]
         rows = np.flatnonzero(~followed)
         free, here = self.free[rows], vectors[rows]
-        near = replace(self, free=free[:, np.unique(free.indices)])
+        near = replace(self, free=free[:, np.unique(free.indices)], others=None)
         return np.asarray(here - near.free @ near.coordinates(here))
 
     def reduce(self, matrix: Sparse) -> Sparse:
-        """free^T matrix free, (n_free, n_free) CSR. Supports along the axes only pick rows and columns, which is faster."""
+        """free^T matrix free, (n_free, n_free) CSR. Supports along the axes only pick rows and columns, which is faster.
+
+        matrix: over displacements, or over the values of all fields."""
+        if self.others is not None and matrix.shape[0] > self.free.shape[0]:
+            whole = self.others.whole(self.free)
+            return (whole.T @ matrix @ whole).tocsr()
         picks = self.free.nnz == self.free.shape[1] and (self.free.data == 1.0).all()
         if picks and matrix.nnz < 2**31:
             place = np.full(matrix.shape[0], -1, dtype=np.int32)
@@ -129,7 +137,7 @@ class Constraints:
     def can_move(self, points: NDArray[np.int64], directions: NDArray[np.float64]) -> NDArray[np.float64]:
         """The part of a direction (n, dim unit vectors) along which each of n points is free to move, (n, dim)."""
         dim = directions.shape[1]
-        gram = row_products(self.free, (dim * points[:, None] + np.arange(dim)).astype(np.int64))
+        gram = row_products(self.free, dofs_at(points, dim))
         if self.orthonormal:
             return np.einsum("nab,nb->na", gram, directions)
         size, axes = np.linalg.eigh(gram)  # of the displacements that a point can take
@@ -153,24 +161,16 @@ def supports(model: Model) -> Constraints:
         )
         gram = free.T @ free
         orthonormal = abs(gram - sp.identity(gram.shape[0])).max() < ORTHONORMAL if gram.shape[0] else True
-        at, shape = free.tocoo(), (free.shape[0] // model.dim, free.shape[1])
-        point = sp.csr_matrix((np.ones(at.nnz), (at.row // model.dim, at.col)), shape=shape)
+        at, shape = free.tocoo(), (n_places(free.shape[0], model.dim), free.shape[1])
+        point = sp.csr_matrix((np.ones(at.nnz), (place_of(at.row, model.dim), at.col)), shape=shape)
         point.sum_duplicates()
         coupled = bool(np.bincount(point.indices).max(initial=0) > 1)
     factors = [1.0 if history is None else history.largest for history in model.histories]
     largest = float((np.abs(prescribed) @ factors).max(initial=0.0))
     turning += _turned(model, free.shape[1])
     turns = Turns(turning, model.dim, len(model.mesh.points)) if model.finite and turning else None
-    return Constraints(
-        free,
-        prescribed,
-        largest,
-        orthonormal,
-        coupled,
-        bodies,
-        links if model.equations or model.preloads else None,
-        turns,
-    )
+    linked = links if model.equations or model.preloads else None
+    return Constraints(free, prescribed, largest, orthonormal, coupled, bodies, linked, turns)
 
 
 def _together(
@@ -196,7 +196,7 @@ def _together(
         names += [body.words] * len(held.values)
     node, direction, value, origin = conditions
     dim = model.dim
-    entries = (np.repeat(np.arange(len(node)), dim), (dim * node[:, None] + np.arange(dim)).ravel())
+    entries = (np.repeat(np.arange(len(node)), dim), dofs_at(node, dim).ravel())
     rows_of = sp.csr_matrix((direction.ravel(), entries), shape=(len(node), n_dofs))
     linear, constants = equations(model)
     names += [_name(model, i) for i in origin] + [f"equations[{i}]" for i in range(len(model.equations))]
@@ -235,7 +235,7 @@ def equations(model: Model) -> tuple[Sparse, NDArray[np.float64]]:
         values[i, histories.index(equation.amplitude)] = equation.value
         for term in equation.terms:
             node = int(model.mesh.node_sets[term.on][0]) if isinstance(term.on, str) else int(term.on)
-            entries.append((i, dim * node + "xyz".index(term.component), term.coefficient))
+            entries.append((i, int(dofs_at(node, dim)["xyz".index(term.component)]), term.coefficient))
     row, column, coefficient = np.array(entries, dtype=float).reshape(-1, 3).T
     shape = (len(model.equations), model.mesh.points.size)
     return sp.csr_matrix((coefficient, (row.astype(np.int64), column.astype(np.int64))), shape=shape), values
@@ -297,16 +297,17 @@ def _node_by_node(
             )
         prescribed[k] = x
         count = basis.shape[1]
-        free_rows.append(np.tile(dim * k + np.arange(dim), count))
+        free_rows.append(np.tile(dofs_at(k, dim), count))
         free_columns.append(np.repeat(column + np.arange(count), dim))
         free_values.append(basis.T.ravel())
         column += count
     rows, columns = np.concatenate(free_rows), np.concatenate(free_columns)
     point = np.empty(column, dtype=np.int64)
-    point[columns] = rows // dim
+    point[columns] = place_of(rows, dim)
     place = np.empty(column, dtype=np.int64)
     place[np.argsort(point, kind="stable")] = np.arange(column)  # columns in the order of the points
-    free = sp.csr_matrix((np.concatenate(free_values), (rows, place[columns])), shape=(dim * len(mesh.points), column))
+    shape = n_dofs(len(mesh.points), dim), column
+    free = sp.csr_matrix((np.concatenate(free_values), (rows, place[columns])), shape=shape)
     free.eliminate_zeros()
     return free, prescribed.reshape(free.shape[0], -1)
 

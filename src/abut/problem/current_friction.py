@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from abut.contact.block_rows import CompressedRows, added_up, block_rows, in_place, row_numbers
 from abut.contact.coupling_tangent import CouplingTangent
 from abut.contact.slip_points import SlipNow
+from abut.dofs import n_places
 from abut.mesh.surface import Surface
 from abut.problem.tangent_frames import Frames, FramesNow
 from abut.types import Sparse
@@ -32,7 +33,7 @@ class Rubbing:
 def rub_in_plane(part: Sparse, by: CouplingTangent, operators: CompressedRows, slip: SlipNow) -> Rubbing:
     """2D: one component along the normals turned by a right angle. part: (m, 9 n_facets); operators: as in
     ``CouplingTangent``, functions added up."""
-    points, normals = by.turning.shape[1] // 2, by.turning.shape[0] // 2
+    normals, points = (n_places(n, 2) for n in by.turning.shape)
     by_normals = block_rows(added_up(part, slip.by_normals, normals), normals)
     by_points = block_rows(added_up(part, slip.by_points, points), points)
     return Rubbing(
@@ -64,7 +65,7 @@ def rub_in_space(
     """3D: two components along tangents that turn with the surface. down: (n, 9 n_facets); operators: blocks (n, 3, 3)
     of tractions along the axes, functions added up."""
     at, kept = tangents.now, tangents.kept
-    points, normals = by.turning.shape[1] // 3, by.turning.shape[0] // 3
+    normals, points = (n_places(n, 3) for n in by.turning.shape)
     value = down @ slip.value
     rows = block_rows(_along(at.tangents, operators), points)
     by_points = block_rows(_along(at.tangents, added_up(down, slip.by_points, points)), points)

@@ -10,6 +10,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.dofs import DISPLACEMENT
 from abut.model import Model
 from abut.model.conditions import weights
 from abut.model.offset import offsets
@@ -18,7 +19,7 @@ from abut.problem.free_modes import FreeModeSprings
 from abut.problem.kinematics import Kinematics, Placed
 from abut.problem.pair import Pair, by_pair
 from abut.problem.restraint import Restraint
-from abut.problem.terms import Motion, Share, Term
+from abut.problem.terms import Motion, Share, Term, added_up
 from abut.solution.state import State
 from abut.types import Operator, Sparse
 
@@ -47,12 +48,45 @@ class Discretised:
     kinematics: Sequence[Kinematics] | None = None
 
     @property
+    def own(self) -> frozenset[str]:
+        """Names of the terms of other physics."""
+        return frozenset(term.name for item in self.model.physics for term in item.terms(self.model, self.model.dofs))
+
+    @property
     def n_free(self) -> int:
         return int(self.constraints.free.shape[1])
 
     def displacement(self, state: State) -> NDArray[np.float64]:
         """Of all points, (dim n_points,)."""
         return self.constraints.displacement(state.unknowns, weights(self.model.histories, state.time))
+
+    def values(self, state: State) -> NDArray[np.float64]:
+        """Of all fields, (n_values,), displacements first."""
+        others, displacement = self.constraints.others, self.displacement(state)
+        if others is None:
+            return displacement
+        return np.concatenate([displacement, others.values(state.unknowns, weights(self.model.histories, state.time))])
+
+    def motion(self, time: float, values: NDArray[np.float64]) -> Motion:
+        """What terms see of values of all fields, (n_values,)."""
+        if self.constraints.others is None:
+            return Motion(time, values)
+        fields = self.constraints.others.dofs.named(values)
+        return Motion(time, fields.pop(DISPLACEMENT).ravel(), fields=fields)
+
+    def sizes(
+        self, shares: Sequence[Share], states: Sequence[State], stiffness: Operator
+    ) -> NDArray[np.float64] | None:
+        """(n_free,) what residuals are judged against, field by field, where there are others than displacements: the
+        largest force of a term, or what the largest values do; states: begin and end of the step."""
+        others = self.constraints.others
+        if others is None:
+            return None
+        n = others.dofs.size
+        largest = np.max([others.largest(added_up([share.force], n)) for share in shares], axis=0)
+        moved = np.max([others.largest(self.values(state)) for state in states], axis=0)
+        unit = others.largest(others.whole(self.constraints.free) @ np.abs(stiffness.diagonal()))
+        return np.maximum(largest, unit * moved)
 
     def split(self, values: NDArray[Any]) -> list[NDArray[Any]]:
         """Values of all multipliers (n,), pair by pair."""

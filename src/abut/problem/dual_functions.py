@@ -18,6 +18,7 @@ from abut.contact.geometry import beside_others, full_moments
 from abut.contact.pressure_space import PressureSpace, inner_facets, partly_dual
 from abut.contact.rim import ends_on_target, goes_on, rim
 from abut.contact.slip_points import SlipNow
+from abut.dofs import n_places
 from abut.mesh.surface import Surface
 from abut.problem.current_friction import Rubbing, Tangents
 from abut.problem.pair import WHOLE, Pair
@@ -109,7 +110,7 @@ class Mixed:
         order = np.arange(2 * n).reshape(2, n).T.ravel()  # two of a function side by side
         slopes = sp.vstack(along).tocsr()[order][tangents.kept]
         value, column, start = self.by.operators
-        square = block_rows((value[..., 3:].reshape(-1, 3, 3), column, start), self.by.turning.shape[1] // 3)
+        square = block_rows((value[..., 3:].reshape(-1, 3, 3), column, start), n_places(self.by.turning.shape[1], 3))
         pulled = sp.diags((apart @ tangents.traction).ravel()) @ sp.kron(self.change, np.ones((3, 1)), format="csr")
         bending = square.T.tocsr() @ pulled
         return replace(
@@ -124,7 +125,7 @@ class Mixed:
         points = self.by.turning.shape[1]
         dim = 3 if value.shape[2] in (3, 12) else 2
         value = value[..., dim:] if turned else value[..., :dim]
-        return block_rows((value, column, start), points // dim).tocsr()
+        return block_rows((value, column, start), n_places(points, dim)).tocsr()
 
 
 def dual_share(covered: Array) -> Array:

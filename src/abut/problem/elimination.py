@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
+import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
 from abut.errors import SingularModelError
@@ -39,6 +40,25 @@ class Eliminated:
     prescribed: NDArray[np.float64]
     independent: NDArray[np.int64]
     pivots: NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Links:
+    """What the forces of equations follow from. outer: (dim n_points, n) the unknowns before equations; matrix: (m, m) the
+    coefficients of the m constraints that were eliminated, at the unknowns ``pivots`` they were solved for; equations:
+    (m, dim n_points) coefficients on all displacements of those that are equations."""
+
+    outer: Sparse
+    matrix: Sparse
+    pivots: NDArray[np.int64]
+    equations: Sparse
+
+    def forces(self, residual: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The share of equations in the forces (dim n_points,) that hold the points."""
+        if not len(self.pivots):
+            return np.zeros_like(residual)
+        multipliers = spla.splu(self.matrix.T.tocsc()).solve((self.outer.T @ residual)[self.pivots])
+        return np.asarray(self.equations.T @ multipliers)
 
 
 def eliminate(rows: Sparse, values: NDArray[np.float64], names: Sequence[str]) -> Eliminated:

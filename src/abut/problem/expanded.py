@@ -16,7 +16,7 @@ from abut.problem.discretised import Discretised, stacked, unit_of
 from abut.problem.frame import Frame
 from abut.problem.kinematics import ContactNow
 from abut.problem.linearised import Expansion, Linearised
-from abut.problem.terms import Motion, Share
+from abut.problem.terms import Share, added_up
 from abut.solution.state import State
 from abut.types import Operator
 
@@ -25,41 +25,45 @@ Array = NDArray[np.float64]
 
 
 def expanded(problem: Discretised, before: State, frame: Frame, now: State, here: Array, change: Array) -> Linearised:
-    """Near displacements ``here`` (dim n_points,); change: of all points, without which ``here`` is at an earlier
+    """Near values ``here`` (n_values,) of all fields; change: of all of them, without which ``here`` is at an earlier
     time."""
     factors = weights(problem.model.histories, now.time)
     there = weights(problem.model.histories, before.time) if change.any() else factors
     constraints = problem.constraints.near(now.unknowns, there)
-    began, contacts = problem.displacement(before), list[ContactNow]()
-    shares = problem.shares(before, Motion(before.time, began), Motion(now.time, here))
+    began, contacts = problem.values(before), list[ContactNow]()
+    shares = problem.shares(before, problem.motion(before.time, began), problem.motion(now.time, here))
+    n = constraints.free.shape[0]
     assert problem.kinematics is not None
     for kind, part, placed in zip(problem.kinematics, frame.pairs, problem.placed(now)):
-        contacts.append(kind.at(part, replace(placed, displacement=here), began))
-    stiff = [share.tangent for share in shares if share.tangent is not None]
+        contacts.append(kind.at(part, replace(placed, displacement=here[:n]), began[:n]))
+    stiff = [(share.tangent, len(share.force)) for share in shares if share.tangent is not None]
     bendings = [contact.bending for contact in contacts]
     bending = reduce(add, bendings) if bendings else None
-    whole = np.sum([share.force for share in shares], axis=0)
+    whole = added_up([share.force for share in shares], len(here))
     if change.any():
-        whole = whole + sum(tangent.internal(change) for tangent in stiff)
-        whole = whole if bending is None else whole - bending @ change
+        moved = [tangent.internal(change[:size]) for tangent, size in stiff]
+        whole = whole + added_up(moved, len(here))
+        if bending is not None:
+            whole[:n] -= bending @ change[:n]
     by_contact = None if bending is None else constraints.reduce(bending)
-    elastic = sum(tangent.reduce(constraints) for tangent in stiff)
+    elastic = sum(tangent.reduce(constraints) for tangent, _ in stiff)
     stiffness = problem.springs.added_to(elastic if by_contact is None else elastic - by_contact)
     rows = [pair_now.pair.rows for pair_now in contacts]
     if problem.constraints.turns is not None:
         pushed = sum(pair_now.T @ p for pair_now, p in zip(rows, problem.split(now.multipliers)))
-        stiffness = stiffness + problem.constraints.turns.bending(now.unknowns, there, whole - pushed)
-    force = constraints.free.T @ whole
-    about = _expansion(problem, shares, now.unknowns, here, force, stiffness)
+        stiffness = stiffness + problem.constraints.turns.bending(now.unknowns, there, whole[:n] - pushed)
+    force = constraints.forces(whole)
+    about = _expansion(problem, shares, now.unknowns, here[:n], force, stiffness)
     operators = [(pair_now.by_position @ constraints.free).tocsr() for pair_now in contacts]
     pairs = [replace(pair_now.pair, operator=by, gap=pair_now.gap) for pair_now, by in zip(contacts, operators)]
-    gap = np.concatenate([np.zeros(0), *(each.gap + each.by_position @ change for each in contacts)])
+    gap = np.concatenate([np.zeros(0), *(each.gap + each.by_position @ change[:n] for each in contacts)])
     load = -about.unbalanced
     return Linearised(
         now.time, factors, stiffness, load, pairs, stacked(pairs, problem.n_free), gap, problem.motions, problem.restraint,
         load, unit_of(stiffness), about=about if not pairs else replace(about, symmetric=False),
         pushing=sp.vstack([pair_now @ constraints.free for pair_now in rows]).tocsr() if rows else None,
         forgotten=_idle(contacts), bending=by_contact, shares=problem.named(shares),
+        sizes=problem.sizes(shares, (before, now), stiffness),
     )  # fmt: skip
 
 
@@ -71,7 +75,7 @@ def _expansion(
     that moves far leaves more than that in a soft one's scale."""
     points = problem.model.mesh.points
     size = float(np.ptp(points, axis=0).max()) / len(points) ** (1.0 / problem.model.dim)
-    largest = max(float(np.abs(share.force).max(initial=0.0)) for share in shares)
+    largest = max(float(np.abs(share.force[: len(moved)]).max(initial=0.0)) for share in shares)
     symmetric = all(share.symmetric for share in shares)
     unbalanced = force + problem.springs.forces(at)
     unit = unit_of(stiffness)

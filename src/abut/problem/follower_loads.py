@@ -9,6 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from abut.bodies.follower import follower_pressure
+from abut.dofs import dofs_at
 from abut.errors import InputError
 from abut.model import Load, Model, Moment, Pressure
 from abut.model.conditions import weights
@@ -76,8 +77,7 @@ class FollowerLoads:
 
 def _places(body: RigidBody, points: Array) -> Sparse:
     """(dim n_points, dim n) ones from the points of a body to all."""
-    dim = points.shape[1]
-    rows = (dim * body.nodes[:, None] + np.arange(dim)).ravel()
+    rows = dofs_at(body.nodes, points.shape[1]).ravel()
     return sp.csr_matrix((np.ones(len(rows)), (rows, np.arange(len(rows)))), shape=(points.size, len(rows)))
 
 

@@ -17,6 +17,7 @@ from abut.solution.state import State
 from abut.types import Array, Operator, Sparse
 
 Vector = NDArray[np.float64]
+NOTHING = 1e-300  # size of what is not there
 
 
 @dataclass(frozen=True)
@@ -68,7 +69,8 @@ class Linearised:
     about: under finite deformation, else None; B q is then B (q - at). Contact forces may have other columns than gaps have
     rows: F^T p with ``pushing`` F (n, n_free); bending: (n_free, n_free) their derivative, which K has with opposite sign;
     forgotten: (n,) multipliers of friction without a past, which carry nothing; shares: of the terms by name, without their
-    tangents, none where the problem is constant.
+    tangents, none where the problem is constant; sizes: (n_free,) what residuals are judged against where there are fields
+    beside displacements; even: the stiffness is symmetric.
     """
 
     time: float
@@ -88,6 +90,8 @@ class Linearised:
     forgotten: NDArray[np.bool_] | None = None
     bending: Operator | None = None
     shares: Mapping[str, Share] = field(default_factory=dict)
+    sizes: Vector | None = None
+    even: bool = True
 
     def __len__(self) -> int:
         """Number of multipliers."""
@@ -123,7 +127,7 @@ class Linearised:
     @property
     def symmetric(self) -> bool:
         """Whether the stiffness is."""
-        return self.about is None or self.about.symmetric
+        return self.even if self.about is None else self.about.symmetric
 
     def same_matrices(self, other: Linearised) -> bool:
         """Whether stiffness, operator and compliance are the very objects of another state's."""
@@ -143,6 +147,10 @@ class Linearised:
         if len(state.multipliers):
             residual = residual - self.columns.T @ state.multipliers
         return np.asarray(residual)
+
+    def relative(self, residual: Vector, largest: float) -> Vector:
+        """A residual (n_free,) over the largest force, that of other fields over their own."""
+        return residual / (largest if self.sizes is None else np.maximum(self.sizes, NOTHING))
 
     def gap(self, state: State) -> Vector:
         """Weighted gaps of all multipliers, (n,)."""

@@ -52,7 +52,7 @@ def loads(model: Model) -> Loads:
     value for each point."""
     applied, temperature = applied_load(model), nodal_temperature(model)
     resultant = applied.reshape(-1, model.dim, applied.shape[1]).sum(axis=0)
-    strained = strain_load(model, temperature) if model.deformable.constant else 0.0  # others: with the stresses
+    strained = strain_load(model, temperature) if model.linear_bodies else 0.0  # others: with the stresses
     return Loads(applied + strained, resultant, temperature, applied_load(model, True) if followers(model) else None)
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from abut.dofs import dofs_at
 from abut.types import Array
 
 
@@ -65,8 +66,8 @@ def spread(arms: Array, points: Array, weights: Array, offset: Array, force: Arr
     by_own = np.einsum("n,nij->inj", weights, across).reshape(3, -1)
     by_lever = soft @ (bent @ by_turn + by_own)
     left = -weights[:, None, None] * np.concatenate([along, spin(s) @ along], axis=2)
-    kept = (3 * np.arange(n)[:, None] + np.arange(dim)).ravel()
-    return Spread(forces[:, :dim], left.reshape(3 * n, 6)[kept], np.concatenate([by_lever, by_turn])[:, kept], turns)
+    kept = dofs_at(np.arange(n), 3)[:, :dim].ravel()
+    return Spread(forces[:, :dim], left.reshape(-1, 6)[kept], np.concatenate([by_lever, by_turn])[:, kept], turns)
 
 
 def _in_space(vectors: Array) -> Array:

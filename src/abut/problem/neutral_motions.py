@@ -13,6 +13,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from abut.contact.geometry import nodal_normals
+from abut.dofs import place_of
 from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.problem.pair import Pair
@@ -106,7 +107,7 @@ def _sides(
     motions = own[first : first + moves.rigid.per_group]
     for pair in pairs:
         seen = np.zeros(len(pair.contactor.points), dtype=bool)
-        seen[pair.rows.indices // pair.contactor.dim] = True
+        seen[place_of(pair.rows.indices, pair.contactor.dim)] = True
         sides = [_by_group(moves, surface, seen) for surface in (pair.contactor, pair.target)]
         for mine, others in (sides, sides[::-1]):
             for other, facets in others[1].items() if group in mine[1] else ():

@@ -102,7 +102,7 @@ class ContactProblem(Discretised):
         """As in ``Problem``. A constant problem is affine everywhere: it is expanded about zero displacement, whose forces
         have no rounding."""
         if self.kinematics is not None:
-            here = self.displacement(now)
+            here = self.values(now)
             return expanded(self, before, frame, now, here, np.zeros_like(here))
         if self.constant:
             rest = np.zeros(self.n_free)
@@ -111,8 +111,8 @@ class ContactProblem(Discretised):
 
     def ahead(self, before: State, frame: Frame, time: float) -> Linearised:
         """The problem near the converged state ``before``, with what is prescribed at another time: theory (G10)."""
-        there, now = self.displacement(before), replace(before, time=time)
-        return expanded(self, before, frame, now, there, self.displacement(now) - there)
+        there, now = self.values(before), replace(before, time=time)
+        return expanded(self, before, frame, now, there, self.values(now) - there)
 
     def accepted(self, before: State, frame: Frame, now: State, system: Linearised) -> State:
         """As in ``Problem``."""

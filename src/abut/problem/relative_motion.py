@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from abut.contact.node_to_segment import feet
+from abut.dofs import dofs_at, n_dofs
 from abut.mesh.surface import Surface
 from abut.problem.constraints import Constraints
 from abut.types import Sparse
@@ -87,7 +88,7 @@ def _as_prescribed(means: Sparse, nodes: NDArray[np.int64], constraints: Constra
     directions where either is turned about an axis."""
     given = constraints.prescribed
     size = max(float(np.abs(given).max(initial=0.0)), 1e-300)
-    parts = [(_component(means, a, dim) @ given - given[dim * nodes + a]) / size for a in range(dim)]
+    parts = [(_component(means, a, dim) @ given - given[dofs_at(nodes, dim)[:, a]]) / size for a in range(dim)]
     result = np.array([[(p * q).sum(axis=1) for q in parts] for p in parts]).transpose(2, 0, 1)
     for turn in () if constraints.turns is None else constraints.turns.turns:
         if turn.given.any():
@@ -100,7 +101,7 @@ def _as_prescribed(means: Sparse, nodes: NDArray[np.int64], constraints: Constra
 def _component(means: Sparse, axis: int, dim: int) -> Sparse:
     """On displacements (dim n_points,), (n, dim n_points)."""
     at = means.tocoo()
-    return sp.csr_matrix((at.data, (at.row, dim * at.col.astype(np.int64) + axis)), (at.shape[0], dim * at.shape[1]))
+    return sp.csr_matrix((at.data, (at.row, dofs_at(at.col, dim)[:, axis])), (at.shape[0], n_dofs(at.shape[1], dim)))
 
 
 def _spanned(products: Array, none: float) -> Array:

@@ -10,6 +10,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.dofs import dofs_at, n_dofs
 from abut.errors import InputError
 from abut.mesh.mesh import Mesh
 from abut.model import Coupling, Model
@@ -79,16 +80,16 @@ class RigidBody:
         """Displacement of points (n, dim) by the unknowns, (n, dim, n_unknowns)."""
         return motions((points - self.centre) / self.size, self.axisymmetric)
 
-    def columns(self, n_dofs: int) -> Sparse:
+    def columns(self, size: int) -> Sparse:
         """Displacement of all points of the mesh by the unknowns, (dim n_points, n_unknowns) sparse; none where points
         follow by equations."""
         if not self.whole:
-            return sp.csr_matrix((n_dofs, self.unknowns))
+            return sp.csr_matrix((size, self.unknowns))
         values = self.moved(self.points)
         dim, count = values.shape[1:]
-        rows = np.repeat(dim * self.nodes[:, None] + np.arange(dim), count)
-        columns = np.tile(np.arange(count), dim * len(self.nodes))
-        matrix = sp.csr_matrix((values.ravel(), (rows, columns)), shape=(n_dofs, count))
+        rows = np.repeat(dofs_at(self.nodes, dim), count)
+        columns = np.tile(np.arange(count), n_dofs(len(self.nodes), dim))
+        matrix = sp.csr_matrix((values.ravel(), (rows, columns)), shape=(size, count))
         matrix.eliminate_zeros()
         return matrix
 
@@ -253,7 +254,7 @@ def body_rows(
     the unknowns, of which ``columns`` are the body's own; prescribed: (dim n_points, n_histories) the rest of them."""
     given, values = body.prescribed(histories)
     dim = body.points.shape[1]
-    dofs = (dim * body.nodes[:, None] + np.arange(dim)).ravel()
+    dofs = dofs_at(body.nodes, dim).ravel()
     if body.mean:
         by_points = sp.csr_matrix(given @ body.spreading().T)
         return Rows((by_points @ free[dofs]).tocsr(), values - by_points @ prescribed[dofs])

@@ -10,6 +10,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
+from abut.dofs import n_dofs
 from abut.mesh.mesh import Mesh
 from abut.types import Sparse
 
@@ -69,7 +70,7 @@ def rigid_modes(mesh: Mesh) -> RigidModes:
         x = x / max(np.abs(x).max(), 1e-300)
         first = per_group * g
         modes[nodes, :, first : first + per_group] = motions(x, mesh.axisymmetric)
-    return RigidModes(modes.reshape(n * dim, -1), tuple(groups), per_group)
+    return RigidModes(modes.reshape(n_dofs(n, dim), -1), tuple(groups), per_group)
 
 
 def near_null(mesh: Mesh, rigid: RigidModes) -> NDArray[np.float64]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
+from abut.dofs import dofs_at, n_dofs
 from abut.errors import InputError
 from abut.model import Model
 from abut.model.preload import Preload, Section, sections
@@ -47,10 +48,10 @@ def shortenings_of(model: Model) -> Shortenings:
     points, turned = [sp.csr_matrix((0, size))], [np.zeros((0, len(cut)))]
     values, names = [np.zeros((0, len(model.histories)))], []
     for number, section in enumerate(cut):
-        preload, count = section.preload, dim * len(section.before)
+        preload, count = section.preload, n_dofs(len(section.before), dim)
         row, parts = np.arange(count), []
         for sign, nodes in ((1.0, section.beyond), (-1.0, section.before)):
-            at = (dim * nodes[:, None] + np.arange(dim)).ravel()
+            at = dofs_at(nodes, dim).ravel()
             parts.append(sp.csr_matrix((np.full(count, sign), (row, at)), (count, size)))
         given = np.zeros((int(preload.shortening is not None), len(model.histories)))
         if preload.shortening is not None:
@@ -69,7 +70,7 @@ def shortening_row(section: Section, dim: int, size: int) -> Array:
     row = np.zeros(size)
     share = section.normal / len(section.before)
     for sign, nodes in ((-1.0, section.beyond), (1.0, section.before)):
-        row[dim * nodes[:, None] + np.arange(dim)] = sign * share
+        row[dofs_at(nodes, dim)] = sign * share
     return row
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.problem.constraints import Constraints
-from abut.types import Operator
+from abut.types import Operator, Sparse
 
 Vector = NDArray[np.float64]
 
@@ -28,20 +28,37 @@ class Tangent(Protocol):
 
 
 @dataclass(frozen=True)
+class MatrixTangent:
+    """A tangent that is a sparse matrix: over all values (n_values, n_values), or over displacements alone."""
+
+    matrix: Sparse
+
+    def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
+        """As in ``Tangent``."""
+        return np.asarray(self.matrix @ displacement)
+
+    def reduce(self, constraints: Constraints) -> Sparse:
+        """As in ``Tangent``, CSR."""
+        return constraints.reduce(self.matrix)
+
+
+@dataclass(frozen=True)
 class Motion:
     """What a term sees of a state. displacement: (dim n_points,) of all points; history: the term's, by part, empty at the
-    start."""
+    start; fields: others by name, (places, components)."""
 
     time: float
     displacement: Vector
     history: Mapping[str, Vector] = field(default_factory=dict)
+    fields: Mapping[str, Vector] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class Share:
-    """A term's share of the balance of forces. force: (dim n_points,) on the left-hand side (loads are negative there);
-    tangent: what reduces to the free displacements, None for none; history: as in ``Motion``, new; symmetric:
-    the tangent; energy: elastic, of a term that knows it, not a number where a material does not tell it."""
+    """A term's share of the balance of forces. force: (dim n_points,) on the left-hand side (loads are negative there), or
+    (n_values,) of all fields; tangent: what reduces to the unknowns, over values as the force has them, None for none;
+    history: as in ``Motion``, new; symmetric: the tangent; energy: elastic, of a term that knows it, not a number where a
+    material does not tell it."""
 
     force: Vector
     tangent: Tangent | None = None
@@ -63,3 +80,13 @@ class Term(Protocol):
     def evaluate(self, before: Motion, now: Motion) -> Share:
         """Force and tangent at ``now``, which follows the converged ``before``, whose history both carry."""
         ...
+
+
+def added_up(forces: Sequence[Vector], size: int) -> Vector:
+    """The sum of forces, (size,); those that are shorter are of the first values alone."""
+    if all(len(force) == size for force in forces):
+        return np.asarray(np.sum(forces, axis=0))
+    total = np.zeros(size)
+    for force in forces:
+        total[: len(force)] += force
+    return total

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from abut.contact.coupling import Coupling
 from abut.contact.pressure_space import PressureSpace, only, reduce
+from abut.dofs import dofs_at, n_dofs
 from abut.mesh.surface import Surface
 from abut.problem.constraints import Constraints
 from abut.problem.held_multipliers import HELD, NO_EFFECT, row_norms
@@ -41,8 +42,8 @@ def tied_rows(contactor: Surface, coupling: Coupling, space: PressureSpace, cons
         functions = np.flatnonzero(free_here) if free_here.any() else np.arange(len(space))
         scalar = (free_space.transfer.T @ coupling.operator).tocsr()
         spread = sp.csr_matrix(
-            (np.ones(scalar.shape[1]), (np.arange(scalar.shape[1]), dim * np.arange(scalar.shape[1]) + a)),
-            shape=(scalar.shape[1], dim * scalar.shape[1]),
+            (np.ones(scalar.shape[1]), (np.arange(scalar.shape[1]), dofs_at(np.arange(scalar.shape[1]), dim)[:, a])),
+            shape=(scalar.shape[1], n_dofs(scalar.shape[1], dim)),
         )
         component = (scalar @ spread).tocsr()
         keep = row_norms(component @ constraints.free) > NO_EFFECT * free_space.weight

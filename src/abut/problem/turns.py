@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.dofs import dofs_at, n_dofs
+from abut.problem.other_fields import widened
 from abut.types import Array, Sparse
 
 NEAR = 1e-2  # square of an angle below which series serve
@@ -45,6 +47,10 @@ class Turns:
     dim: int
     n_points: int
 
+    def widened(self, n_free: int) -> Turns:
+        """With so many unknowns, further ones turning nothing."""
+        return replace(self, turns=[replace(turn, by_free=widened(turn.by_free, n_free)) for turn in self.turns])
+
     def displacement(self, free: Array, factors: Array) -> Array:
         """What finite turns add to the displacements of small ones, (dim n_points,)."""
         result = np.zeros((self.n_points, self.dim))
@@ -58,13 +64,13 @@ class Turns:
 
     def columns(self, free: Array, factors: Array) -> Sparse:
         """Derivative of ``displacement`` by the free displacements, (dim n_points, n_free)."""
-        total = sp.csr_matrix((self.dim * self.n_points, len(free)))
+        total = sp.csr_matrix((n_dofs(self.n_points, self.dim), len(free)))
         for turn in self.turns:
             if not turn.by_free.nnz:
                 continue
             beyond = slopes(turn.vector(free, factors)) - SPIN
             moved = np.einsum("kij,nj->nik", beyond, turn.arms)[:, : self.dim].reshape(-1, 3)
-            rows = (self.dim * turn.nodes[:, None] + np.arange(self.dim)).ravel()
+            rows = dofs_at(turn.nodes, self.dim).ravel()
             place = sp.csr_matrix((np.ones(len(rows)), (rows, np.arange(len(rows)))), shape=(total.shape[0], len(rows)))
             total = total + place @ sp.csr_matrix(moved) @ turn.by_free
         return total.tocsr()

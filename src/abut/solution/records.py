@@ -121,7 +121,7 @@ class Step:
     stress_error: StressError | None = None  # None where nothing gives way
     remembered: Mapping[str, NDArray[np.float64]] = field(
         default_factory=dict
-    )  # by materials, at points: (n_points, ...)
+    )  # by materials, at points: (n_points, ...); and fields beside displacements
     flow: Flow | None = None  # None where no material yields
     preloads: Mapping[str, PreloadResult] = field(default_factory=dict)
     springs: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)  # force (dim,) on what each is on

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from abut._core import shape_functions
 from abut.cells import CELLS
+from abut.dofs import dofs_at
 from abut.mesh.mesh import Mesh
 from abut.mesh.quadrature import stiffness_rule
 from abut.verify.norms import h1_matrix
@@ -48,7 +49,7 @@ def _divergence(mesh: Mesh, pressures: int) -> sp.csc_matrix:
         root = np.linalg.cholesky(np.einsum("cqm,cq,cqk->cmk", functions, volume, functions))
         functions = np.swapaxes(np.linalg.solve(root, np.swapaxes(functions, 1, 2)), 1, 2)
         own = np.einsum("cqm,cq,cqna->cmna", functions, volume, gradient)
-        dofs = block.nodes[:, :, None] * mesh.dim + np.arange(mesh.dim)
+        dofs = dofs_at(block.nodes, mesh.dim)
         n = own.shape[0] * own.shape[1]
         rows.append(np.repeat(done + np.arange(n), dofs[0].size))
         columns.append(np.repeat(dofs.reshape(len(own), -1), pressures, axis=0).ravel())

@@ -18,6 +18,7 @@ from abut.contact.coupling import couple, surface_degree
 from abut.contact.geometry import nodal_normals
 from abut.contact.nodal_recovery import facet_node_values
 from abut.contact.sides import Sides
+from abut.dofs import component_of, dofs_at, place_of
 from abut.errors import InputError
 from abut.linear.saddle_point import newton_step
 from abut.materials.elastic import LinearElastic
@@ -139,11 +140,11 @@ def _pinned(model: Model, exact: NDArray[np.float64]) -> Model:
     for i, group in enumerate(rigid.groups):
         nodes = np.unique(np.concatenate([mesh.nodes_of(body) for body in group]))
         far = _spread_out(mesh.points[nodes])
-        candidates = (dim * nodes[far][:, None] + np.arange(dim)).ravel()
+        candidates = dofs_at(nodes[far], dim).ravel()
         modes = rigid.modes[candidates, rigid.per_group * i : rigid.per_group * (i + 1)]
         chosen = scipy.linalg.qr(modes.T, mode="r", pivoting=True)[1][: rigid.per_group]
         for dof in candidates[chosen]:
-            node, axis = divmod(int(dof), dim)
+            node, axis = int(place_of(dof, dim)), int(component_of(dof, dim))
             sets[f"pin {dof}"] = np.array([node])
             pins.append(support_along(f"pin {dof}", "xyz"[axis], float(exact[node, axis])))
     return replace(model, mesh=replace(mesh, node_sets={**mesh.node_sets, **sets}), supports=pins)
