@@ -16,8 +16,8 @@ import pyamg
 import scipy.sparse as sp
 
 from abut.bodies.assemble import stiffness
+from abut.bodies.rigid_modes import rigid_modes
 from abut.problem.constraints import supports
-from abut.problem.rigid_modes import rigid_modes
 
 TOLERANCE = 1e-8
 

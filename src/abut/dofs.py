@@ -10,7 +10,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import scipy.sparse as sp
 from numpy.typing import NDArray
+
+from abut.types import Sparse
 
 DISPLACEMENT = "displacement"
 
@@ -91,3 +94,9 @@ class Dofs:
     def named(self, values: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
         """Values (size,) by field, (places, components)."""
         return {f.name: values[self.range_of(f.name)].reshape(f.places, f.components) for f in self.fields}
+
+
+def widened(matrix: Sparse, unknowns: int) -> Sparse:
+    """A matrix with columns of zeros for further unknowns, up to so many."""
+    rows = matrix.tocsr()
+    return sp.csr_matrix((rows.data, rows.indices, rows.indptr), shape=(rows.shape[0], unknowns))

@@ -12,13 +12,13 @@ from pyamg.aggregation import standard_aggregation
 import abut
 from abut._core import strong_part
 from abut.bodies.assemble import stiffness
+from abut.bodies.rigid_modes import rigid_modes
 from abut.bodies.solids import Solids
 from abut.linear import strength
 from abut.linear.multigrid import hierarchy
 from abut.linear.strength import means, near
 from abut.mesh.make import box
 from abut.mesh.mesh import Mesh
-from abut.problem.rigid_modes import rigid_modes
 
 STEEL = abut.LinearElastic(210e3, 0.3)
 

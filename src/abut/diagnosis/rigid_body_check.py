@@ -8,6 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.bodies.rigid_modes import each_motion, free_motions
 from abut.diagnosis.finding import Finding, Motion, from_error
 from abut.errors import SingularModelError
 from abut.model import Model
@@ -18,7 +19,6 @@ from abut.problem.loads import loads
 from abut.problem.neutral_motions import neutral_motions
 from abut.problem.pair import Pair
 from abut.problem.restraint import Restraint, require_held, restraint
-from abut.problem.rigid_modes import each_motion, free_motions
 
 SHOWN = 0.1  # size of a motion over that of its body, for the eye
 

@@ -10,6 +10,7 @@ import scipy.linalg
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.bodies.rigid_modes import free_motions, resistance_of_rows, rigid_modes
 from abut.errors import SingularModelError
 from abut.linear import direct
 from abut.model import Model
@@ -17,7 +18,6 @@ from abut.problem.backend import serial
 from abut.problem.constraints import Constraints
 from abut.problem.pair import Pair
 from abut.problem.restraint import resistance_of_supports
-from abut.problem.rigid_modes import free_motions, resistance_of_rows, rigid_modes
 
 MOST = {2: 30_000, 3: 8_000}  # free displacements by dimension, and multipliers, up to which this costs a few seconds
 MULTIPLIERS = 800

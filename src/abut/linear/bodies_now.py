@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.bodies.rigid_modes import free_motions, near_null, rigid_modes
 from abut.problem.linearised import Linearised
 from abut.problem.problem import ContactProblem
 from abut.problem.restraint import resistance_of_supports
-from abut.problem.rigid_modes import free_motions, near_null, rigid_modes
 from abut.types import Sparse
 
 

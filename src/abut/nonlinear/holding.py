@@ -9,13 +9,13 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.bodies.rigid_modes import RigidModes, free_motions, resistance_of_rows, rigid_modes
 from abut.nonlinear.settings import Settings
 from abut.problem.balance import Balance
 from abut.problem.linearised import Linearised
 from abut.problem.pair import Pair
 from abut.problem.problem import ContactProblem
 from abut.problem.restraint import resistance_of_supports
-from abut.problem.rigid_modes import RigidModes, free_motions, resistance_of_rows, rigid_modes
 from abut.solution.state import CLOSED, State
 
 

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 
 from abut._core import principal_submatrix
 from abut.contact.geometry import nodal_normals
-from abut.dofs import dofs_at, n_dofs, n_places, place_of
+from abut.dofs import dofs_at, n_dofs, n_places, place_of, widened
 from abut.errors import SingularModelError
 from abut.fields import evaluate
 from abut.mesh.mesh import Mesh
 from abut.model import Model, Support
 from abut.problem.elimination import Links, eliminate, row_products
-from abut.problem.other_fields import OtherFields, widened
+from abut.problem.other_fields import OtherFields
 from abut.problem.rigid_bodies import RigidBody, body_rows, rigid_bodies
 from abut.problem.sections import shortenings_of
 from abut.problem.turns import Turn, Turns, about

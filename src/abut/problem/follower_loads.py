@@ -9,17 +9,16 @@ import numpy as np
 import scipy.sparse as sp
 
 from abut.bodies.follower import follower_pressure
+from abut.bodies.mean_turn import Spread, spread
 from abut.dofs import dofs_at
 from abut.errors import InputError
 from abut.model import Load, Model, Moment, Pressure
 from abut.model.conditions import weights
 from abut.model.coupling import in_line
-from abut.problem.backend import Serial
 from abut.problem.constraints import Constraints
 from abut.problem.loads import followers, force_and_moment
-from abut.problem.mean_turn import Spread, spread
 from abut.problem.rigid_bodies import RigidBody
-from abut.problem.terms import Motion, Share, Tangent
+from abut.problem.terms import MatrixTangent, Motion, Share, Tangent
 from abut.types import Array, Sparse
 
 
@@ -55,7 +54,7 @@ class FollowerLoads:
                 replace(surface, points=points), load.value, surface.points, f"pressure on '{load.on}': value"
             )
             force, slope = force + factor * pushed, slope + factor * by
-        tangent = Slopes(Serial(self.model, -slope), parts)
+        tangent = Slopes(MatrixTangent(-slope), parts)
         return Share(-force, tangent, symmetric=symmetric and not slope.nnz)
 
     def _at_reference(self, body: RigidBody, load: Load, factor: float, points: Array) -> Spread:

@@ -11,10 +11,10 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
+from abut.bodies.rigid_modes import RigidModes, describe, each_motion, free_motions, simple_motions
 from abut.errors import SingularModelError
 from abut.problem.constraints import Constraints
 from abut.problem.neutral_motions import Neutral
-from abut.problem.rigid_modes import RigidModes, describe, each_motion, free_motions, simple_motions
 from abut.types import Array, Sparse
 
 NO_WORK = 1e-9  # of loads on a unit motion, over the sum of their sizes: rounding

@@ -12,12 +12,12 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
+from abut.bodies.rigid_modes import FREE, RigidModes, free_motions
 from abut.contact.geometry import nodal_normals
 from abut.dofs import place_of
 from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.problem.pair import Pair
-from abut.problem.rigid_modes import FREE, RigidModes, free_motions
 from abut.types import Array
 
 SAME = 0.2  # sine, about, of the angle between motions that are one but for noise

@@ -70,9 +70,3 @@ def other_fields(model: Model, n_moving: int) -> OtherFields | None:
     columns = n_moving + np.arange(len(rows))
     free = sp.csr_matrix((np.ones(len(rows)), (rows, columns)), shape=(len(held), n_moving + len(rows)))
     return OtherFields(dofs, free, prescribed)
-
-
-def widened(matrix: Sparse, columns: int) -> Sparse:
-    """With columns of zeros up to so many."""
-    rows = matrix.tocsr()
-    return sp.csr_matrix((rows.data, rows.indices, rows.indptr), shape=(rows.shape[0], columns))

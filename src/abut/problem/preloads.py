@@ -11,10 +11,9 @@ import scipy.sparse as sp
 from abut.mesh.facets import bodies_at
 from abut.model import Model
 from abut.model.preload import Section, sections
-from abut.problem.backend import Serial
 from abut.problem.follower_loads import Slopes
 from abut.problem.sections import given_force, shortening_row
-from abut.problem.terms import Motion, Share
+from abut.problem.terms import MatrixTangent, Motion, Share
 
 HELD = 1e6  # stiffness of what is locked over Young's modulus times the section's size: what it gives is a millionth
 SAME = 1e-9  # times that differ by less are one
@@ -54,7 +53,7 @@ class LockedPreloads:
             total += (given_force(preload, preload.lock) + stiffness * (float(kept[0, 0]) - short)) * row
             parts.append((sp.csr_matrix(-stiffness * row[:, None]), sp.csr_matrix(row[None])))
             history[preload.name] = kept
-        return Share(-total, Slopes(Serial(self.model, sp.csr_matrix((size, size))), parts), history)
+        return Share(-total, Slopes(MatrixTangent(sp.csr_matrix((size, size))), parts), history)
 
     def _stiffness(self, section: Section) -> float:
         mesh = self.model.mesh

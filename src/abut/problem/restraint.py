@@ -9,11 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import nnls
 
-from abut.errors import SingularModelError
-from abut.mesh.mesh import Mesh
-from abut.problem.constraints import Constraints
-from abut.problem.pair import Pair
-from abut.problem.rigid_modes import (
+from abut.bodies.rigid_modes import (
     RigidModes,
     describe,
     free_motions,
@@ -21,6 +17,10 @@ from abut.problem.rigid_modes import (
     rigid_modes,
     simple_motions,
 )
+from abut.errors import SingularModelError
+from abut.mesh.mesh import Mesh
+from abut.problem.constraints import Constraints
+from abut.problem.pair import Pair
 
 UNBALANCED = 1e-9  # force that no contact balances, over the sum of all, from which on it moves a body
 SLIGHT = 1e-9  # change of a gap over the motion that is rounding

@@ -10,13 +10,13 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.bodies.mean_turn import mean_turn
+from abut.bodies.rigid_modes import motions
 from abut.dofs import dofs_at, n_dofs
 from abut.errors import InputError
 from abut.mesh.mesh import Mesh
 from abut.model import Coupling, Model
 from abut.model.conditions import History, Rigid
-from abut.problem.mean_turn import mean_turn
-from abut.problem.rigid_modes import motions
 from abut.types import Array, Sparse
 
 LOOSE = 1e-12  # square of what a unit unknown moves points by, over the largest, that counts as nothing

@@ -13,8 +13,7 @@ from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.model.spring import Spring, Table
-from abut.problem.backend import Serial
-from abut.problem.terms import Motion, Share, Tangent
+from abut.problem.terms import MatrixTangent, Motion, Share, Tangent
 from abut.types import Array, Sparse
 
 ONE = 1e-12  # distance of both ends of a spring, over the model's size, that gives no direction
@@ -69,7 +68,7 @@ class Springs:
         slope = sp.csr_matrix((len(displacement),) * 2)
         for part in self.parts:
             slope = slope + part.rows.T @ sp.diags(part.forces(part.rows @ displacement)[1]) @ part.rows
-        return Serial(self.model, slope.tocsr())
+        return MatrixTangent(slope.tocsr())
 
     def resistance(self, motions: Array) -> Array:
         """Gram matrix of motions (dim n_points, m) by what springs take of them, of the size of one."""

@@ -10,8 +10,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut.dofs import dofs_at, n_dofs
-from abut.problem.other_fields import widened
+from abut.dofs import dofs_at, n_dofs, widened
 from abut.types import Array, Sparse
 
 NEAR = 1e-2  # square of an angle below which series serve

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from abut.analysis.certificate import BALANCE, balance
 from abut.bodies.assemble import stiffness
 from abut.bodies.loads import stress_load
+from abut.bodies.rigid_modes import rigid_modes
 from abut.cells import MAX_FACET_NODES
 from abut.contact.coupling import couple, surface_degree
 from abut.contact.geometry import nodal_normals
@@ -31,7 +32,6 @@ from abut.problem.constraints import supports
 from abut.problem.contact_pairs import pair
 from abut.problem.linearised import Rows
 from abut.problem.pair import Pair
-from abut.problem.rigid_modes import rigid_modes
 
 EXACT = 1e-8  # of pressure and displacement, relative: rounding times the condition of the user's meshes
 FLAT = 1e-6  # deviation of normals, and of points from their plane over their extent, that still counts as plane

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from abut.problem.mean_turn import mean_turn, spread
+from abut.bodies.mean_turn import mean_turn, spread
 
 STEP = 1e-6
 CLOSE = 1e-7  # of central differences: STEP squared, and rounding over STEP
