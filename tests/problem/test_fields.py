@@ -10,11 +10,14 @@ import numpy as np
 import pytest
 
 import abut
+from abut.analysis.linear_solvers import assembled_bodies
 from abut.errors import InputError, SingularModelError
 from abut.mesh.make import box, join, rectangle
 from abut.mesh.mesh import Mesh
 from abut.model.physics import TEMPERATURE
+from abut.problem.clock import Clock
 from models.conduction import Conduction, Heater
+from models.inertia import Inertia
 
 LENGTH, YOUNG, ALPHA, CONDUCTIVITY, HOT = 5.0, 200e3, 1e-3, 0.04, 80.0
 MATERIAL = abut.LinearElastic(YOUNG, 0.0, expansion=ALPHA)
@@ -126,3 +129,7 @@ def test_what_cannot_be_is_said() -> None:
         abut.solve(heated(mesh, BETWEEN, solve=abut.SolveOptions(linear="amg")))
     with pytest.raises(InputError, match=r"physics\[1\]: there is another field 'temperature'"):
         replace(heated(mesh, BETWEEN), physics=[BETWEEN, BETWEEN])
+    with pytest.raises(InputError, match=r"physics\[1\]: a term cannot be named 'inertia'"):
+        abut.solve(replace(heated(mesh, BETWEEN), physics=[Inertia("bar.right", 1.0, 1.0, (0.0, 0.0))] * 2))
+    with pytest.raises(InputError, match="solved on one process"):
+        assembled_bodies(heated(mesh, BETWEEN), print, print, Clock(), object())  # type: ignore[arg-type]

@@ -46,10 +46,10 @@ def frame(problem: Discretised, before: State) -> Frame:
 
 def linearised(problem: Discretised, before: State, frame: Frame, now: State) -> Linearised:
     """The problem near the state ``now``."""
-    there, here = (problem.motion(state.time, problem.values(state)) for state in (before, now))
-    shares = problem.shares(before, there, here)
+    began, here = (problem.values(state) for state in (before, now))
+    shares = problem.shares(before, problem.motion(before.time, began), problem.motion(now.time, here))
     factors = weights(problem.model.histories, now.time)
-    force = problem.constraints.forces(added_up([share.force for share in shares], len(problem.values(now))))
+    force = problem.constraints.forces(added_up([share.force for share in shares], len(here)))
     if problem.stiffness is not None:
         stiffness, load = problem.stiffness, -force
     else:

@@ -91,7 +91,9 @@ def assemble(
         bodies = LinearBodies(backend, loaded, model.histories, model.temperatures)
     else:
         bodies = SolidBodies(model, loaded, backend)
-    beside = [*_beside(model, constraints, loaded), *([sprung] if sprung else []), *_own(model)]
+    beside = [*_beside(model, constraints, loaded), *([sprung] if sprung else [])]
+    own = _own(model, [term.name for term in (bodies, *beside)])
+    beside += own
     affine = not (model.finite or model.physics) and _is_constant(model, [bodies, *beside])
     problem = ContactProblem(
         model=model,
@@ -105,6 +107,7 @@ def assemble(
         motions=constraints.coordinates(restrained.free),
         unit=unit_of(reduced) if affine else 0.0,
         kinematics=[kinematics(pair, constraints, backend) for pair in every] if model.finite else None,
+        own=frozenset(term.name for term in own),
     )
     for solid in model.solids:
         if solid.integration == "auto" and (how := model.integration(solid)) != "full":
@@ -137,9 +140,18 @@ def _beside(model: Model, constraints: Constraints, loaded: Loads) -> list[Term]
     return terms if locked is None else [*terms, locked]
 
 
-def _own(model: Model) -> list[Term]:
-    """Terms of physics beside displacements."""
-    return [term for item in model.physics for term in item.terms(model, model.dofs)]
+def _own(model: Model, taken: Sequence[str]) -> list[Term]:
+    """Terms of other physics. Raises InputError for a name that is taken, or has a dot, which histories are named with."""
+    terms, names = list[Term](), list(taken)
+    for i, item in enumerate(model.physics):
+        for term in item.terms(model, model.dofs):
+            if term.name in names or "." in term.name:
+                raise InputError(
+                    f"physics[{i}]: a term cannot be named '{term.name}'; give it a name of its own, without dots"
+                )
+            names.append(term.name)
+            terms.append(term)
+    return terms
 
 
 def _describe(pairs: Sequence[Pair], note: Callable[[str], None]) -> None:

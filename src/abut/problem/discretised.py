@@ -32,7 +32,7 @@ class Discretised:
     (n, n_free) all of them stacked; restraint: of rigid-body modes; springs: on free rigid-body modes; stiffness:
     (n_free, n_free) where every term is constant, else None; motions: (n_free, m) rigid-body modes that supports leave free;
     unit: size of the stiffness' entries, where it is constant; kinematics: of each pair at current positions, None where all
-    is looked at where bodies were.
+    is looked at where bodies were; own: names of the terms of other physics.
     """
 
     model: Model
@@ -46,11 +46,7 @@ class Discretised:
     motions: NDArray[np.float64]
     unit: float = 0.0
     kinematics: Sequence[Kinematics] | None = None
-
-    @property
-    def own(self) -> frozenset[str]:
-        """Names of the terms of other physics."""
-        return frozenset(term.name for item in self.model.physics for term in item.terms(self.model, self.model.dofs))
+    own: frozenset[str] = frozenset()
 
     @property
     def n_free(self) -> int:
