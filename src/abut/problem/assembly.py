@@ -86,11 +86,7 @@ def assemble(
     require_unmoved(restrained, forces)
     _check_finite(reduced.diagonal(), loaded.forces)
     n_free = reduced.shape[0]
-    bodies: Bodies
-    if model.linear_bodies:
-        bodies = LinearBodies(backend, loaded, model.histories, model.temperatures)
-    else:
-        bodies = SolidBodies(model, loaded, backend)
+    bodies = _bodies(model, loaded, backend)
     beside = [*_beside(model, constraints, loaded), *([sprung] if sprung else [])]
     own = _own(model, [term.name for term in (bodies, *beside)])
     beside += own
@@ -115,6 +111,12 @@ def assemble(
     note(f"{n_free} free displacements, {sum(map(len, every))} multipliers")
     clock.mark("set-up")
     return Assembled(problem, bodies, loaded)
+
+
+def _bodies(model: Model, loaded: Loads, backend: Backend) -> Bodies:
+    if model.linear_bodies:
+        return LinearBodies(backend, loaded, model.histories, model.temperatures)
+    return SolidBodies(model, loaded, backend)
 
 
 def _is_constant(model: Model, terms: Sequence[Term]) -> bool:
@@ -147,7 +149,7 @@ def _own(model: Model, taken: Sequence[str]) -> list[Term]:
         for term in item.terms(model, model.dofs):
             if term.name in names or "." in term.name:
                 raise InputError(
-                    f"physics[{i}]: a term cannot be named '{term.name}'; give it a name of its own, without dots"
+                    f"physics[{i}]: a term cannot be named '{term.name}'; give it another name, without dots"
                 )
             names.append(term.name)
             terms.append(term)
