@@ -33,12 +33,15 @@ def sides(parts: list[str]) -> None:
 
 
 def certificate(files: list[str]) -> None:
-    """The summary of bench/certificate/run.py, of its files if given."""
+    """The summaries of bench/certificate/run.py side by side, of its files if given."""
     sys.path.insert(0, str(BENCH / "certificate"))
     import run
 
     found = [one for path in files for one in run.read(path)] or [run.outcome(case) for case in run.chosen()]
-    write_table(PAGE, "certificate", ["", ""], run.summary(found))
+    parts = run.halves(found)
+    columns = [dict(run.summary(part)) for part in parts.values()]
+    rows = [[name, *(column.get(name, "-") for column in columns)] for name in columns[-1]]
+    write_table(PAGE, "certificate", ["", *parts], rows)
 
 
 def main() -> None:

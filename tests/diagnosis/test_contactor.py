@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import abut
-from abut.contact.contactor_choice import Side, choose
+from abut.contact.contactor_choice import Side, choose, shows_nodes
 from abut.diagnosis.contactor import sides
 from abut.materials.softest import contact_modulus, softest
 from abut.mesh.make import join, rectangle, ring
@@ -118,6 +118,16 @@ def test_rule(change: dict[str, float], other: dict[str, float], chosen: int, ru
     choice, back = choose(one, two), choose(two, one)
     assert (choice.contactor, choice.rule) == (chosen, rule)
     assert rule == "alike" or (back.contactor, back.rule, back.clear) == (1 - chosen, rule, choice.clear)
+
+
+def test_much_softer_tetrahedra_as_target() -> None:
+    """Looked at where the target is softer by far and of tetrahedra, whatever the sizes; never on the side that the rule
+    takes."""
+    stiff, soft = replace(SIDE, modulus=1e3, size=2.0), replace(SIDE, tetrahedra=True)
+    assert shows_nodes(stiff, soft)
+    assert not shows_nodes(soft, stiff)
+    assert not shows_nodes(stiff, SIDE)
+    assert not shows_nodes(replace(SIDE, modulus=2.0), soft)
 
 
 def test_softest_body_of_a_side() -> None:

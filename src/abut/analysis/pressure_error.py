@@ -56,6 +56,24 @@ def pressure_error(
     return float(off.max()) / largest if len(off) else float("nan")
 
 
+def hollow(pair: Pair, pressure: Array, largest: float) -> float:
+    """How far the pressure on planes of symmetry lies below the plane through its neighbours and their mirror images at
+    most, inside contact, over ``largest``: a pressure that is even and has its top there lies above it.
+
+    pressure: (n_points,) at the corners, of the contactor split at its creases."""
+    surface, normals = side_normals(pair.contactor)
+    graph = Graph.of_nodes(surface)
+    count, along = _planes(pair, len(graph.rim))
+    _, mirrored = _mirrored(pair, graph)
+    edge = graph.rim & ~(mirrored & ((count > 1) | along.any(axis=1)))  # its pressure may have no limit
+    closed = (pressure > CLOSED * largest) & ~edge
+    within = mirrored & closed & graph.all_of(closed)
+    if not within.any():
+        return 0.0
+    below = _between(graph, surface.points, normals, pressure, count, along) - pressure
+    return max(float(below[within].max()), 0.0) / largest
+
+
 def _change(graph: Graph, bent: Array, within: NDArray[np.bool_]) -> Array:
     """Half the distance of values from the mean of those of the neighbours ``within``, (n_points,)."""
     count = np.asarray(graph.matrix @ within.astype(float))

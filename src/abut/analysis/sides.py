@@ -1,4 +1,5 @@
-"""Whether a contactor that the user has named shows the facets of its target: the certificate's line "sides"."""
+"""Whether a contactor that the user has named shows the facets of its target, or what single nodes of it take: the
+certificate's line "sides"."""
 
 from __future__ import annotations
 
@@ -7,7 +8,10 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.contact.contactor_choice import Side, choose, shows_facets
+from abut.analysis.pressure_error import hollow
+from abut.contact.contactor_choice import Side, choose, shows_facets, shows_nodes
+from abut.contact.geometry import split_at_creases
+from abut.contact.nodal_recovery import at_points
 from abut.problem.pair import Pair
 from abut.solution import Check
 
@@ -18,17 +22,29 @@ Array = NDArray[np.float64]
 def sides_check(
     pair: Pair, sides: tuple[Side, Side] | None, nodal: Array, carried: Array, none: float = 0.0
 ) -> Iterator[Check]:
-    """A line where the rule would take the other side because this one is finer and not softer; theory (P17).
+    """A line where the rule would take the other side because this one is finer and not softer, or lies on much softer
+    tetrahedra of first order; theory (P17).
 
     sides: contactor and target as the choice sees them; nodal: (n_facets, 9) reported pressure; carried:
     (n_target_facets, 9) the same at the target's nodes; none: pressure that is taken for none."""
-    if sides is None or not shows_facets(*sides):
+    if sides is None:
         return
-    pressed = np.nanmax(np.abs(nodal), initial=0.0) > none
-    yield Check(
-        pair.contact.name, "sides", unresolved(pair, nodal, carried) if pressed else 0.0, LIMIT,
-        f"share of the pressure that the target's facets cannot follow, where {against(*sides)}",
-    )  # fmt: skip
+    largest = float(np.nanmax(np.abs(nodal), initial=0.0))
+    pressed, found = largest > none, []
+    if shows_facets(*sides):
+        value = unresolved(pair, nodal, carried) if pressed else 0.0
+        found.append((value, f"share of the pressure that the target's facets cannot follow, where {against(*sides)}"))
+    if shows_nodes(*sides):
+        points = at_points(split_at_creases(pair.contactor)[0], nodal)
+        stiffer = sides[0].modulus / sides[1].modulus
+        meaning = (
+            "how far the pressure on planes of symmetry lies below that around, over the largest, where the contactor is "
+            f"{stiffer:.2g} times stiffer than tetrahedra of first order, whose nodes take unequal shares there"
+        )
+        found.append((hollow(pair, points, largest) if pressed else 0.0, meaning))
+    if found:
+        value, meaning = max(found)
+        yield Check(pair.contact.name, "sides", value, LIMIT, meaning)
 
 
 def unresolved(pair: Pair, nodal: Array, carried: Array) -> float:

@@ -122,5 +122,13 @@ def shows_facets(contactor: Side, target: Side) -> bool:
     return choice.contactor == 1 and choice.rule in ("softer", "coarser") and finer > (FINER if clearly else TWICE)
 
 
+def shows_nodes(contactor: Side, target: Side) -> bool:
+    """Whether a contactor may show what single nodes of its target take: the rule takes the other side as the softer one by
+    far, and it is of tetrahedra of first order, whose shares at planes of symmetry are put right on the contactor only."""
+    choice = choose(contactor, target)
+    stiffer = contactor.modulus > STIFFER * target.modulus
+    return choice.contactor == 1 and choice.rule == "softer" and stiffer and target.tetrahedra
+
+
 def _bare(side: Side, other: Side) -> bool:
     return side.covered < BARE and side.covered < other.covered - BARER
