@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 import abut
-from abut.contact.bulge import Held
+from abut.contact.bulge import Held, with_bulge
 from abut.contact.geometry import nodal_normals, smoothing
 from abut.contact.moving_normals import normal_pattern
 from abut.mesh.make import box, join, rectangle, ring
@@ -74,6 +74,23 @@ def test_normals_are_those_of_the_whole(cell: str) -> None:
     assert np.abs(plain[on, 0]).max() > (
         0.02 if own.nodes.shape[1] and cell in ("tri3", "quad4", "tet4", "hex8") else 0.0
     )
+
+
+@pytest.mark.parametrize("cell", LINEAR)
+def test_bulges_are_those_of_the_whole(cell: str) -> None:
+    """Of a tube between four planes, of which the half has the fourth only as a support."""
+    half = round_body(cell)
+    sides = [abut.Support(side, **on) for side, on in (("end", {"x": 0.0}), ("start", {"y": 0.0}))]
+    own = with_bulge(half.surface("outer"), held_directions(half, sides))
+    image = whole(half, 0)
+    both = with_bulge(image.surface("outer"), held_directions(image, sides[1:]))
+    plain = with_bulge(half.surface("outer"))
+    assert own.bulge is not None
+    assert both.bulge is not None
+    assert plain.bulge is not None
+    size, expected = np.abs(both.bulge).max(), both.bulge[: len(own)]
+    assert np.abs(own.bulge - expected).max() < 1e-9 * size
+    assert np.abs(plain.bulge - expected).max() > 1e-3 * size
 
 
 @pytest.mark.parametrize("cell", PLANE + SOLID)
