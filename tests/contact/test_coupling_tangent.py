@@ -12,7 +12,7 @@ from abut.cells import CELLS
 from abut.contact.block_rows import block_rows
 from abut.contact.coupling import Coupling, CouplingOptions, Plan, couple, plan_pair, point_columns
 from abut.contact.coupling_tangent import CouplingTangent, coupling_tangent
-from abut.contact.geometry import Smoothing, by_kind, facet_sizes, nodal_normals, smoothing
+from abut.contact.geometry import OnPlanes, Smoothing, by_kind, facet_sizes, nodal_normals, smoothing
 from abut.contact.moving_normals import normal_pattern
 from abut.contact.slip_points import SlipNow, SlipPoints, slip_now
 from abut.errors import InputError
@@ -107,10 +107,11 @@ def error(
     options: CouplingOptions = FIXED,
     step: float = STEP,
     seed: int = 5,
+    across: Smoothing | None = None,
 ) -> float:
     """Largest difference between derivatives and differences along one direction, relative."""
     contactor, target = pair
-    across = smoothing(contactor)
+    across = across or smoothing(contactor)
     tangent = coupling_tangent(contactor, target, degree, options, *load(contactor), across=across)
     size = len(contactor.points) + len(target.points), contactor.dim
     way = np.random.default_rng(seed).uniform(-1.0, 1.0, size)
@@ -162,6 +163,27 @@ def test_bulges(pair: tuple[Surface, Surface]) -> None:
     assert abs(seen[0].operator - seen[1].operator).max() == 0.0
     assert (seen[1].gap <= seen[0].gap).all()
     assert (seen[1].gap < seen[0].gap).any()
+
+
+def mirrored(contactor: Surface) -> Smoothing:
+    """Normals in the plane square to x at the points with the smallest x, as at a plane of symmetry."""
+    across, used = smoothing(contactor), contactor.nodes >= 0
+    x = contactor.points[contactor.nodes[used], 0]
+    visits = np.flatnonzero(x < np.quantile(x, 0.2))
+    inside = np.diag([0.0, 1.0, 1.0][: contactor.dim])
+    return replace(across, planes=OnPlanes(visits, np.broadcast_to(inside, (len(visits), *inside.shape))))
+
+
+@pytest.mark.parametrize(
+    "pair",
+    [*(lines((a, b)) for a in LINES for b in LINES), *(faces((a, "tri3")) for a in FACES), faces(("tri3", "quad4"))],
+)
+def test_planes_of_symmetry(pair: tuple[Surface, Surface]) -> None:
+    """Normals that stay in a plane make another coupling, of which the derivative is as exact."""
+    across = mirrored(pair[0])
+    assert error(pair, across=across) < TOLERANCE
+    plain, now = (couple(*pair, 1, FIXED, across=each) for each in (smoothing(pair[0]), across))
+    assert np.abs(now.gap - plain.gap).max() > 1e-3 * np.abs(plain.gap).max()
 
 
 @pytest.mark.parametrize("degree", [0, 1])

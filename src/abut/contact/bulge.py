@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from abut._core import shape_functions
 from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.geometry import area_vectors, by_kind, split_at_creases, straight
+from abut.contact.mirror_images import with_images
 from abut.mesh.surface import Surface
 from abut.types import Sparse
 
@@ -107,8 +108,23 @@ def _over_chord(height: Array, middle: Array, normal: Array) -> Array:
 
 def _vertex_normals(split: Surface, owner: NDArray[np.int64], held: Held | None) -> Array:
     """Unit normals (n_points, dim) of the smooth surface at the corners of a surface that is split at its creases, zero at
-    other points: theory (S16)."""
+    other points: theory (S16). At planes of symmetry they are those of the surface with its mirror image."""
     plain = straight(split)
+    normals = _normals(plain)
+    if held is not None:
+        rim = _rim_points(plain)
+        at = _on_planes(normals, plain, owner[rim], rim, held)
+        if len(at.points):
+            normals = _normals(with_images(plain, at.points, at.directions))[: len(normals)]
+            normals = _inside(normals, at)
+    if plain.axisymmetric:
+        on_axis = plain.points[:, 0] <= ROUNDING * np.abs(plain.points[:, 0]).max()
+        normals[on_axis, 0] = 0.0
+    return np.asarray(normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300))
+
+
+def _normals(plain: Surface) -> Array:
+    """Normals (n_points, dim), about unit, at the points of a surface of straight facets; zero where no facet is."""
     unit = area_vectors(plain).sum(axis=1)
     unit /= np.maximum(np.linalg.norm(unit, axis=1, keepdims=True), 1e-300)
     facet, local = np.nonzero(plain.nodes >= 0)
@@ -128,12 +144,7 @@ def _vertex_normals(split: Surface, owner: NDArray[np.int64], held: Held | None)
     normals = mean.copy()
     if len(bent):
         normals[bent] = _fitted(plain, bent, ring[bent], mean[bent])
-    if held is not None:
-        _mirror(normals, plain, owner[rim], rim, held)
-    if plain.axisymmetric:
-        on_axis = plain.points[:, 0] <= ROUNDING * np.abs(plain.points[:, 0]).max()
-        normals[on_axis, 0] = 0.0
-    return np.asarray(normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300))
+    return normals
 
 
 def _rim_points(plain: Surface) -> NDArray[np.int64]:
@@ -231,9 +242,10 @@ def _middles(plain: Surface) -> NDArray[np.float64]:
     )
 
 
-def _mirror(normals: Array, plain: Surface, points: NDArray[np.int64], rim: NDArray[np.int64], held: Held) -> None:
-    """Normals where a surface ends at a plane of symmetry lie in it: those that lean out of it by less than facets turn.
-    rim: (m,) where it ends, as points of the split surface; points: (m,) the same of the mesh."""
+def _on_planes(normals: Array, plain: Surface, points: NDArray[np.int64], rim: NDArray[np.int64], held: Held) -> Held:
+    """Where a surface that is curved ends at planes of symmetry: normals lean out of these by less than facets turn. rim:
+    (m,) where it ends, as points of the split surface; points: (m,) the same of the mesh. Points of the result are of the
+    split surface."""
     turn = np.zeros(len(normals))
     unit = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
     used = plain.nodes >= 0
@@ -243,9 +255,21 @@ def _mirror(normals: Array, plain: Surface, points: NDArray[np.int64], rim: NDAr
     np.maximum.at(turn, plain.nodes[used], np.broadcast_to(far[:, None], used.shape)[used])
     order = np.argsort(held.points, kind="stable")
     first, last = (np.searchsorted(held.points[order], points, side) for side in ("left", "right"))
-    for k in range(int((last - first).max(initial=0))):
-        here = rim[first + k < last]
-        direction = held.directions[order[(first + k)[first + k < last]]]
-        lean = (normals[here] * direction).sum(axis=1)
-        leans = np.abs(lean) <= turn[here]
-        normals[here[leans]] -= lean[leans, None] * direction[leans]
+    here = np.repeat(np.arange(len(rim)), last - first)
+    which = order[np.arange(len(here)) + np.repeat(first - np.cumsum(last - first) + (last - first), last - first)]
+    directions, here = held.directions[which], rim[here]
+    leans = np.abs(np.einsum("na,na->n", unit[here], directions)) <= turn[here]
+    leans &= turn[here] > ROUNDING
+    return Held(here[leans], directions[leans])
+
+
+def _inside(normals: Array, at: Held) -> Array:
+    """Normals that lie in the planes to rounding, exactly there."""
+    result, order = normals.copy(), np.argsort(at.points, kind="stable")
+    points, directions = at.points[order], at.directions[order]
+    rank = np.arange(len(points)) - np.searchsorted(points, points)
+    for _ in range(2):  # planes that are not square to each other
+        for k in range(int(rank.max(initial=-1)) + 1):
+            here, direction = points[rank == k], directions[rank == k]
+            result[here] -= np.einsum("na,na->n", result[here], direction)[:, None] * direction
+    return result

@@ -92,6 +92,15 @@ def area_vectors(surface: Surface) -> NDArray[np.float64]:
 
 
 @dataclass(frozen=True)
+class OnPlanes:
+    """Visits (n,) at planes of symmetry, and projections (n, dim, dim) on what lies in these: with the mirror images of the
+    facets there area vectors add up to twice their part in the planes."""
+
+    visits: NDArray[np.int64]
+    inside: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
 class Smoothing:
     """Which facets' normals are averaged at each node of each facet, as decided in one configuration of a surface.
 
@@ -99,10 +108,12 @@ class Smoothing:
 
     here, other: (n,) visits at the same point with no crease between them: the normal at ``here`` contains the facet of
                  ``other``. Each visit is a pair with itself.
+    planes:      where the surface goes on as its mirror image, whatever its configuration.
     """
 
     here: NDArray[np.int64]
     other: NDArray[np.int64]
+    planes: OnPlanes | None = None
 
 
 def smoothing(surface: Surface) -> Smoothing:
@@ -144,6 +155,9 @@ def _visits(surface: Surface) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
 def _totals(vector: NDArray[np.float64], across: Smoothing) -> NDArray[np.float64]:
     total = np.zeros_like(vector)
     np.add.at(total, across.here, vector[across.other])
+    if across.planes is not None:
+        visits = across.planes.visits
+        total[visits] = np.einsum("vab,vb->va", across.planes.inside, total[visits])
     return total
 
 

@@ -46,13 +46,16 @@ class NormalPattern:
 
     numbers: as in ``MovingNormals``; sums: (m, n_visits) which facets' area vectors make each normal (a visit is a node of a
     facet, as in ``Smoothing``); gather: (n_blocks, n_rates) which derivatives of area vectors by a point make each block;
-    row, column: (n_blocks,) normal and point."""
+    row, column: (n_blocks,) normal and point; on_planes, inside: (k,) normals in planes of symmetry, (k, dim, dim)
+    projections on these."""
 
     numbers: NDArray[np.int32]
     sums: Sparse
     gather: Sparse
     row: NDArray[np.int64]
     column: NDArray[np.int32]
+    on_planes: NDArray[np.int32]
+    inside: NDArray[np.float64]
 
     @cached_property
     def _start(self) -> NDArray[np.int32]:
@@ -63,6 +66,7 @@ class NormalPattern:
         dim, used = surface.dim, surface.nodes >= 0
         areas = area_vectors(surface)
         total = self.sums @ areas[used]
+        total[self.on_planes] = np.einsum("kab,kb->ka", self.inside, total[self.on_planes])
         length = np.linalg.norm(total, axis=1)
         check_normals(surface, areas, length[self.numbers[used], None])
         unit = total / length[:, None]
@@ -71,6 +75,7 @@ class NormalPattern:
         rates = np.concatenate([part.reshape(-1, dim * dim) for part in _all_rates(surface)])
         swelling = (self.gather @ rates).reshape(-1, dim, dim)
         across = (np.eye(dim) - unit[:, :, None] * unit[:, None, :]) / length[:, None, None]
+        across[self.on_planes] = across[self.on_planes] @ self.inside
         return MovingNormals(self.numbers, values, (across[self.row] @ swelling, self.column, self._start))
 
 
@@ -88,7 +93,18 @@ def normal_pattern(surface: Surface, across: Smoothing | None = None) -> NormalP
     n_points = len(surface.points)
     keys, place = np.unique(both.row.astype(np.int64) * n_points + node[both.col], return_inverse=True)
     gather = sp.csr_matrix((both.data, (place.ravel(), both.col)), shape=(len(keys), len(visit)))
-    return NormalPattern(numbers, sums, gather, keys // n_points, (keys % n_points).astype(np.int32))
+    on_planes, inside = _in_planes(surface, across, numbers)
+    return NormalPattern(numbers, sums, gather, keys // n_points, (keys % n_points).astype(np.int32), on_planes, inside)
+
+
+def _in_planes(
+    surface: Surface, across: Smoothing, numbers: NDArray[np.int32]
+) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+    """Numbers (k,) of the normals in planes of symmetry, and projections (k, dim, dim) on these."""
+    if across.planes is None:
+        return np.zeros(0, dtype=np.int32), np.zeros((0, surface.dim, surface.dim))
+    own, first = np.unique(numbers[surface.nodes >= 0][across.planes.visits], return_index=True)
+    return own, across.planes.inside[first]
 
 
 def _distinct(surface: Surface, across: Smoothing) -> tuple[NDArray[np.int32], NDArray[np.int64]]:

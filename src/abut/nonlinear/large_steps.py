@@ -64,6 +64,8 @@ class LargeSteps:
         tried = begin.cuts >= (self._control.settings.steps.careful if problem.restraint.by_supports else 1)
         if tried or pace.turned or earlier is None or is_dragged(before) or not problem.pairs:
             return None
+        if before.time <= earlier.time:  # a drag has led on without time
+            return None
         return extrapolated(problem, earlier, before, pace.end or before.time)
 
 

@@ -11,6 +11,7 @@ from abut.cells import MAX_FACET_NODES
 from abut.contact.clearance import partly_adjusted
 from abut.contact.coupling import Coupling, CouplingOptions, GapSamples, couple
 from abut.contact.function_places import at_samples
+from abut.contact.geometry import nodal_normals
 from abut.contact.pressure_space import PressureSpace
 from abut.errors import InputError
 from abut.mesh.surface import Surface
@@ -34,12 +35,14 @@ def taken_off(pair: Pair, reach: float) -> NDArray[np.float64]:
             f"contact '{contact.name}': adjust: contactor and target have points in common, which would be adjusted to "
             "themselves; leave adjust out, or name the surfaces that face each other"
         )
-    rule = contact.integration
+    rule, across = contact.integration, None if pair.moving is None else pair.moving.contactor
     options = CouplingOptions(rule.rule, rule.points, reach, keep_gap_samples=True)
     plain, closed = (
-        couple(contactor, target, pair.coupling.degree, replace(options, adjust=size)) for size in (0.0, contact.adjust)
+        couple(contactor, target, pair.coupling.degree, replace(options, adjust=size), across=across)
+        for size in (0.0, contact.adjust)
     )
-    adjusted = partly_adjusted(contactor, target, closed, contact.adjust, reach, lambda: plain)
+    normals = nodal_normals(contactor, across)
+    adjusted = partly_adjusted(contactor, target, closed, contact.adjust, reach, lambda: plain, normals)
     mixed = pair if pair.space.ordinary else mixed_part(pair, Mixture.of(contactor, plain, None))
     functions = mixed.space.transfer.T
     weight, moved = functions @ plain.weight, functions @ (adjusted.gap - plain.gap)

@@ -14,12 +14,11 @@ from abut.contact.block_rows import added_up, block_rows, in_place, weights_of_r
 from abut.contact.corners import at_corners, edge_on
 from abut.contact.coupling import Coupling, CouplingOptions, couple, surface_degree
 from abut.contact.coupling_tangent import CouplingTangent, Differentiate, differentiated
-from abut.contact.geometry import Smoothing, facet_sizes, full_moments, nodal_normals, smoothing
+from abut.contact.geometry import Smoothing, facet_sizes, full_moments, nodal_normals
 from abut.contact.moving_normals import MovingNormals, NormalPattern, normal_pattern
 from abut.contact.pressure_space import DUAL_P1, PressureSpace
 from abut.contact.rim import Rim, goes_on
 from abut.contact.slip_points import Past, SlipPoints
-from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.problem.adjusted_gaps import BARELY, with_adjusted
 from abut.problem.current_friction import Rubbing, Tangents
@@ -318,25 +317,18 @@ class Current:
         reach = near * self._facet
         fixed = None if self.pair.space.ordinary else reach  # what is covered decides which functions these are
         return CouplingOptions(
-            rule.rule, rule.points, reach + 2.0 * way, largest_gap=fixed, target_across=self._target_creases
+            rule.rule, rule.points, reach + 2.0 * way, largest_gap=fixed, target_across=self._target_across
         )
 
-    @cached_property
+    @property
     def _across(self) -> Smoothing:
-        """Creases are those of the undeformed contactor: forces do not jump when an angle grows."""
-        return smoothing(self.pair.contactor)
+        assert self.pair.moving is not None
+        return self.pair.moving.contactor
 
-    @cached_property
-    def _target_across(self) -> Smoothing:
-        return smoothing(self.pair.target)
-
-    @cached_property
-    def _target_creases(self) -> Smoothing | None:
-        """None where the target has a facet without a normal: the contactor may still see the others."""
-        try:
-            return self._target_across
-        except InputError:
-            return None
+    @property
+    def _target_across(self) -> Smoothing | None:
+        assert self.pair.moving is not None
+        return self.pair.moving.target
 
     @cached_property
     def _nodes(self) -> NDArray[np.int64]:

@@ -9,16 +9,20 @@ import scipy.sparse as sp
 
 from abut.contact.coupling import CouplingOptions, couple
 from abut.contact.function_places import places
-from abut.contact.geometry import facet_products, facet_sizes, full_moments
+from abut.contact.geometry import facet_products, facet_sizes, full_moments, nodal_normals
 from abut.contact.pressure_space import DUAL, DUAL_P1, only, pressure_space, resolve
 from abut.contact.tangential import frames, slip_operators
+from abut.errors import InputError
+from abut.mesh.surface import Surface
 from abut.model import Contact, Model
 from abut.model.friction import friction_values
+from abut.model.symmetry import held_directions
 from abut.problem.constraints import Constraints
+from abut.problem.contact_normals import moving_smoothing
 from abut.problem.contact_pairs import pair, reach_of
 from abut.problem.dual_functions import Mixture
 from abut.problem.held_multipliers import held, without_held
-from abut.problem.pair import Pair, Slip
+from abut.problem.pair import Moving, Pair, Slip
 from abut.problem.relative_motion import passing
 from abut.problem.scales import scales
 
@@ -28,10 +32,15 @@ def finite_pairs(model: Model, constraints: Constraints) -> list[Pair]:
 
     Raises InputError for what goes with small displacements only."""
     made = [
-        pair(model, contact, constraints) if contact.kind == "tied" else finite_pair(model, contact, constraints)
+        _tie(model, contact, constraints) if contact.kind == "tied" else finite_pair(model, contact, constraints)
         for contact in model.contacts
     ]
     return [replace(each, repeated=constraints.together(each.contactor.node_ids, model.dim)) for each in made]
+
+
+def _tie(model: Model, contact: Contact, constraints: Constraints) -> Pair:
+    made = pair(model, contact, constraints)
+    return replace(made, moving=moving_normals(model, made.contactor, made.target))
 
 
 def finite_pair(model: Model, contact: Contact, constraints: Constraints) -> Pair:
@@ -42,8 +51,11 @@ def finite_pair(model: Model, contact: Contact, constraints: Constraints) -> Pai
     if contact.frictional and name == DUAL_P1:
         name = DUAL  # the law of friction looks at pressure and traction node by node
     rule, reach = contact.integration, reach_of(constraints, contactor, target)
-    options = CouplingOptions(rule.rule, rule.points, reach, keep_points=contact.frictional)
-    coupling = couple(contactor, target, degree, options)
+    moving = moving_normals(model, contactor, target)
+    options = CouplingOptions(
+        rule.rule, rule.points, reach, keep_points=contact.frictional, target_across=moving.target
+    )  # fmt: skip
+    coupling = couple(contactor, target, degree, options, across=moving.contactor)
     whole = replace(coupling, weight=full_moments(contactor, degree).ravel(), mass=facet_products(contactor, degree))
     space = without_held(pressure_space(name, contactor, whole), contactor, whole, constraints)
     sizes, both = facet_sizes(contactor), scales(model, contactor, target)
@@ -55,9 +67,19 @@ def finite_pair(model: Model, contact: Contact, constraints: Constraints) -> Pai
         prescribed=rows @ constraints.prescribed, gap=seen.transfer.T @ coupling.gap,
         scale=space.weight * size / both.young, size=size, stiffness=both.young / size,
         index=np.arange(n)[:, None], components=(space,), compliance=both.compliance,
-        carried=held(space, contactor, constraints),
+        carried=held(space, contactor, constraints), moving=moving,
     )  # fmt: skip
     return made if not contact.frictional else _with_tangents(model, made, constraints)
+
+
+def moving_normals(model: Model, contactor: Surface, target: Surface) -> Moving:
+    """Of both sides at the outset. Raises InputError for a facet of the contactor without a normal."""
+    planes = held_directions(model.mesh, model.supports)
+    try:
+        other = moving_smoothing(target, planes)
+    except InputError:
+        other = None
+    return Moving(moving_smoothing(contactor, planes), other)
 
 
 def _with_tangents(model: Model, whole: Pair, constraints: Constraints) -> Pair:
@@ -65,7 +87,8 @@ def _with_tangents(model: Model, whole: Pair, constraints: Constraints) -> Pair:
     dim, n, space = whole.contactor.dim, len(whole.space), whole.space
     at = whole.coupling.points
     assert at is not None
-    points, outward = places(whole.contactor, space)
+    assert whole.moving is not None
+    points, outward = places(whole.contactor, space, nodal_normals(whole.contactor, whole.moving.contactor))
     reach = reach_of(constraints, whole.contactor, whole.target)
     past = passing(whole.contactor, whole.target, space.node, -outward, reach, constraints)
     tangents, free = frames(-outward, past.moves)

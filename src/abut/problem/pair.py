@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from abut.contact.coupling import Coupling
 from abut.contact.friction_bound import FrictionBound
+from abut.contact.geometry import Smoothing
 from abut.contact.pressure_space import PressureSpace
 from abut.contact.symmetry_planes import Planes
 from abut.contact.tangential import SlipOperators
@@ -55,6 +56,15 @@ class Slip:
 
 
 @dataclass(frozen=True)
+class Moving:
+    """Where normals are averaged, and lie in planes of symmetry, wherever a pair moves: as at the outset, so that forces do
+    not jump when an angle grows. target: None where it has a facet without a normal; the contactor may still see others."""
+
+    contactor: Smoothing
+    target: Smoothing | None
+
+
+@dataclass(frozen=True)
 class Pair:
     """One contact pair on the free displacements.
 
@@ -89,6 +99,7 @@ class Pair:
     slip: Slip | None = None  # with friction
     carried: NDArray[np.bool_] | None = None  # (n,) what the target alone sees, as supports hold the contactor's point
     values: FrictionValues | None = None  # the same: its coefficient
+    moving: Moving | None = None  # with finite kinematics
 
     @property
     def tied(self) -> bool:

@@ -77,11 +77,12 @@ def turning_tie(pair: Pair, reach: float) -> TurningTie | None:
     """Of a tie with gaps between its surfaces, at the outset; None where there are none. reach: a length."""
     contactor, target, rule = pair.contactor, pair.target, pair.contact.integration
     options = CouplingOptions(rule.rule, rule.points, reach)
-    points = SlipPoints.of(contactor, target, pair.coupling.degree, options)
+    across = None if pair.moving is None else pair.moving.contactor
+    points = SlipPoints.of(contactor, target, pair.coupling.degree, options, across)
     apart = _positions(contactor, points.facet, points.own) - _positions(target, points.target_facet, points.other)
     if not len(apart) or np.linalg.norm(apart, axis=1).max() <= CLOSED * pair.size:
         return None
-    pattern = normal_pattern(contactor)
+    pattern = normal_pattern(contactor, across)
     normals = pattern.at(contactor)
     mean = np.einsum("qi,qid->qd", points.own, normals.values[points.facet])
     length = np.einsum("qd,qd->q", apart, mean) / np.einsum("qd,qd->q", mean, mean)
