@@ -242,7 +242,7 @@ def _carried(step: Step, time: float) -> State:
     state = replace(step.before, time=time)
     closed, bare = state.closed, barely_covered(system)
     if step.drag is None:  # what has no target opposite is no gap of zero
-        closed = system.restraint.complete(system.forces, closed, np.where(bare, np.inf, system.gap(state)))
+        closed = system.restraint.met_first(system.forces, closed, np.where(bare, np.inf, system.gap(state)))
     closed = closed & ~bare
     state = state.with_status(np.where(closed & ~state.closed, CLOSED, state.status).astype(np.int8))
     while True:
