@@ -36,6 +36,7 @@ from abut.problem.balance import Balance
 from abut.problem.body_terms import heated
 from abut.problem.constraints import Constraints
 from abut.problem.follower_loads import FollowerLoads
+from abut.problem.held_motions import HeldMotions, held_force
 from abut.problem.pair import Pair
 from abut.problem.preloads import LockedPreloads
 from abut.problem.problem import ContactProblem
@@ -58,7 +59,8 @@ class _End:
     """A model at the end of a load step. displacement, internal, loads, reaction: (dim n_points,) without rigid motions on
     springs, forces of stresses, of loads, of supports and links; following: those of loads that follow the deformation,
     and of other physics;
-    locked, sprung: of preloads that are locked, of springs; pressures: (n,) of each pair; cycling: (n,) multipliers that
+    locked, sprung: of preloads that are locked, of springs and
+    of what holds neutral motions; pressures: (n,) of each pair; cycling: (n,) multipliers that
     keep changing; supports: of each pair int H_k over all of the deformed contactor, (n_functions,), where it may meet the
     target anywhere, else None."""
 
@@ -132,7 +134,7 @@ def step_result(
         pressed=max(pushes, default=0.0),
         strain=max((pair.compliance * c.max_pressure / 4.0 for pair, c in zip(balance.pairs, contacts)), default=0.0),
         rounding=_rounding(balance, state.unknowns),
-        spring=springs.force(state.unknowns) if len(springs) else None,
+        spring=held_force(springs, state),
         neutral=springs.noise,
         strained=strained,
         landed=_landed(state),
@@ -179,6 +181,8 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
     for term in problem.terms:
         if isinstance(term, Springs):
             sprung -= term.evaluate(motion, motion).force
+    if HeldMotions.name in balance.forces:
+        sprung -= balance.forces[HeldMotions.name]
     loads = assembled.loaded.forces @ balance.factors + following + locked + sprung
     reaction = internal - loads - contact_force
     return _End(

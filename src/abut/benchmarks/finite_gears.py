@@ -25,35 +25,37 @@ WIND = 0.2 / BASE[1]  # radians that the wheel is turned against the pinion
 LOADED = 0.1  # time at which it has been turned
 
 
-def _half_angle(radius: NDArray[np.float64], teeth: int) -> NDArray[np.float64]:
+def _half_angle(radius: NDArray[np.float64], teeth: int, play: float = PLAY) -> NDArray[np.float64]:
     """Of a tooth at each radius: involute above the base circle, radial below, with fillet and tip relief."""
     pitch, base = 0.5 * MODULE * teeth, 0.5 * MODULE * teeth * np.cos(SLOPE)
     turn = np.arccos(np.minimum(base / radius, 1.0))
-    half = 0.5 * np.pi / teeth - 0.25 * PLAY / pitch + np.tan(SLOPE) - SLOPE - (np.tan(turn) - turn)
+    half = 0.5 * np.pi / teeth - 0.25 * play / pitch + np.tan(SLOPE) - SLOPE - (np.tan(turn) - turn)
     above = np.maximum(radius - pitch, 0.0) / MODULE  # 1 at the tip
     below = np.maximum(pitch - 1.25 * MODULE + FILLET - radius, 0.0)
     return half - (RELIEF * above**3 - 0.5 * below**2 / FILLET) / radius
 
 
-def _gear(teeth: int, level: int) -> Mesh:
-    """A sector about the origin with its middle tooth along x. Surfaces: hub, flanks (counterclockwise ones)."""
-    pitch, cell = 0.5 * MODULE * teeth, "quad8"
+def gear(teeth: int, level: int, both: bool = False, play: float = PLAY, cell: str = "quad8") -> Mesh:
+    """A sector about the origin with its middle tooth along x. Surfaces: hub, flanks (counterclockwise ones, or both). play:
+    between flanks, of the two gears together, along the pitch circle."""
+    pitch = 0.5 * MODULE * teeth
     root, tip, hub = pitch - 1.25 * MODULE, pitch + MODULE, pitch - 4.0 * MODULE
     up, across, gap, rim = 12 * 2**level, 4 * 2**level, 2 * 2**level, 2 * 2**level
     tooth = rectangle((-1.0, 1.0), (0.0, 1.0), (across, up), cell)
     r = root + (tip - root) * tooth.points[:, 1]
-    tooth = _polar(tooth, r, -tooth.points[:, 0] * _half_angle(r, teeth))
-    foot = float(_half_angle(np.array([root]), teeth)[0])
+    tooth = _polar(tooth, r, -tooth.points[:, 0] * _half_angle(r, teeth, play))
+    foot = float(_half_angle(np.array([root]), teeth, play)[0])
     below = rectangle((-foot, foot), (hub, root), (across, rim), cell)
     valley = rectangle((foot - 2.0 * np.pi / teeth, -foot), (hub, root), (gap, rim), cell)
     parts: dict[str, Mesh] = {}
     for i in range(SECTOR):
         turn = 2.0 * np.pi / teeth * (i - SECTOR // 2)
-        parts[f"tooth{i}"] = _turned(tooth, turn)
+        parts[f"tooth{i}"] = placed(tooth, turn)
         for name, part in (("below", below), ("valley", valley)):
             parts[f"{name}{i}"] = _polar(part, part.points[:, 1], turn - part.points[:, 0])
     mesh = _merged(join(parts))
-    flanks = np.concatenate([mesh.surfaces[f"tooth{i}.left"] for i in range(SECTOR)])
+    sides = ("left", "right") if both else ("left",)
+    flanks = np.concatenate([mesh.surfaces[f"tooth{i}.{side}"] for i in range(SECTOR) for side in sides])
     bottoms = [rows for name, rows in mesh.surfaces.items() if name.endswith(".bottom") and "tooth" not in name]
     cells = np.arange(mesh.n_cells)
     return replace(mesh, bodies={"gear": cells}, surfaces={"flanks": flanks, "hub": np.concatenate(bottoms)})
@@ -63,7 +65,7 @@ def _polar(mesh: Mesh, radius: NDArray[np.float64], angle: NDArray[np.float64]) 
     return replace(mesh, points=np.column_stack([radius * np.cos(angle), radius * np.sin(angle)]))
 
 
-def _turned(mesh: Mesh, angle: float, centre: float = 0.0) -> Mesh:
+def placed(mesh: Mesh, angle: float, centre: float = 0.0) -> Mesh:
     """About the origin, and then moved along x to ``centre``."""
     c, s = np.cos(angle), np.sin(angle)
     return replace(mesh, points=mesh.points @ np.array([[c, s], [-s, c]]) + np.array([centre, 0.0]))
@@ -81,9 +83,9 @@ def _gears(level: int) -> Model:
     turn = 4.0 * np.pi / TEETH[0]
     ratio = TEETH[0] / TEETH[1]
     touch = 0.5 * PLAY / (0.5 * MODULE * TEETH[1])  # so that driving flanks touch at the outset
-    pinion = _turned(_gear(TEETH[0], level), -0.5 * turn)
+    pinion = placed(gear(TEETH[0], level), -0.5 * turn)
     between = np.pi / TEETH[1]  # a tooth of the pinion on the line of centres meets a gap of the wheel
-    wheel = _turned(_gear(TEETH[1], level), np.pi + between + 0.5 * turn * ratio + touch, CENTRES)
+    wheel = placed(gear(TEETH[1], level), np.pi + between + 0.5 * turn * ratio + touch, CENTRES)
     history = Amplitude(((0.0, 0.0), (LOADED, -WIND / (turn * ratio)), (1.0, 1.0 - WIND / (turn * ratio))))
     plastic = LinearElastic(3000.0, 0.35)
     return Model(

@@ -15,8 +15,8 @@ from abut.model import Model
 from abut.model.conditions import weights
 from abut.problem.constraints import Constraints
 from abut.problem.free_modes import free_mode_springs
+from abut.problem.held_motions import neutral_in
 from abut.problem.loads import loads
-from abut.problem.neutral_motions import neutral_motions
 from abut.problem.pair import Pair
 from abut.problem.restraint import Restraint, require_held, restraint
 
@@ -58,8 +58,8 @@ def _unheld(model: Model, restrained: Restraint) -> list[Finding]:
     ends, constraints = loads(model).at_ends(model), restrained.constraints
     try:
         unit = sp.identity(constraints.free.shape[1], format="csr")
-        neutral = None if model.finite else neutral_motions(restrained.rigid, restrained.steady, restrained.pairs)
-        springs = free_mode_springs(restrained.rigid, restrained.everything, constraints, unit, ends, neutral)
+        neutral, settled = neutral_in(model, restrained, ends)
+        springs = free_mode_springs(restrained.rigid, restrained.everything, constraints, unit, ends, neutral, settled)
         factors = [weights(model.histories, time) for time in model.ends]
         require_held(restrained.helped_by(springs.gram), ends, factors)
     except SingularModelError as error:

@@ -240,10 +240,10 @@ def _carried(step: Step, time: float) -> State:
     as far as it takes to hold every body."""
     system = dragged(step.problem.ahead(step.before, step.frame, time), step.drag)
     state = replace(step.before, time=time)
-    closed = state.closed
-    if step.drag is None:
-        closed = system.restraint.complete(system.forces, state.closed, system.gap(state))
-    closed = closed & ~barely_covered(system)
+    closed, bare = state.closed, barely_covered(system)
+    if step.drag is None:  # what has no target opposite is no gap of zero
+        closed = system.restraint.met_first(system.forces, closed, np.where(bare, np.inf, system.gap(state)))
+    closed = closed & ~bare
     state = state.with_status(np.where(closed & ~state.closed, CLOSED, state.status).astype(np.int8))
     while True:
         laws = laws_of(system, state, step.asked)

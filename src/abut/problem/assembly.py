@@ -22,9 +22,9 @@ from abut.problem.discretised import stacked, unit_of
 from abut.problem.finite_pairs import finite_pairs
 from abut.problem.follower_loads import FollowerLoads
 from abut.problem.free_modes import free_mode_springs
+from abut.problem.held_motions import HeldMotions, neutral_in
 from abut.problem.kinematics import Kinematics
 from abut.problem.loads import Loads, followers, loads
-from abut.problem.neutral_motions import neutral_motions
 from abut.problem.other_fields import other_fields
 from abut.problem.pair import Pair
 from abut.problem.preloads import LockedPreloads
@@ -73,10 +73,11 @@ def assemble(
     restrained = restraint(model.mesh, constraints, every)
     if sprung is not None:
         restrained = restrained.helped_by(sprung.resistance(restrained.rigid.modes))
-    neutral = None if model.finite else neutral_motions(restrained.rigid, restrained.steady, every)
+    neutral, settled = neutral_in(model, restrained, loaded.at_ends(model))
     springs = free_mode_springs(
-        restrained.rigid, restrained.everything, constraints, reduced, loaded.at_ends(model), neutral
+        restrained.rigid, restrained.everything, constraints, reduced, loaded.at_ends(model), neutral, settled
     )
+    held = HeldMotions.of(model, restrained.rigid, neutral, unit_of(reduced)) if model.finite else None
     for text in springs.notes:
         note(text)
     restrained, reduced = restrained.helped_by(springs.gram), springs.added_to(reduced)
@@ -87,7 +88,7 @@ def assemble(
     _check_finite(reduced.diagonal(), loaded.forces)
     n_free = reduced.shape[0]
     bodies = _bodies(model, loaded, backend)
-    beside = [*_beside(model, constraints, loaded), *([sprung] if sprung else [])]
+    beside = [*_beside(model, constraints, loaded), *(term for term in (sprung, held) if term)]
     own = _own(model, [term.name for term in (bodies, *beside)])
     beside += own
     affine = not (model.finite or model.physics) and _is_constant(model, [bodies, *beside])

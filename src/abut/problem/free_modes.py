@@ -14,7 +14,7 @@ from scipy.sparse.csgraph import connected_components
 from abut.bodies.rigid_modes import RigidModes, describe, each_motion, free_motions, simple_motions
 from abut.errors import SingularModelError
 from abut.problem.constraints import Constraints
-from abut.problem.neutral_motions import Neutral
+from abut.problem.neutral_motions import Neutral, beyond
 from abut.types import Array, Sparse
 
 NO_WORK = 1e-9  # of loads on a unit motion, over the sum of their sizes: rounding
@@ -70,15 +70,19 @@ def free_mode_springs(
     stiffness: Sparse,
     loads: Sequence[NDArray[np.float64]],
     neutral: Neutral | None = None,
+    settled: Array | None = None,
 ) -> FreeModeSprings:
     """Hold the rigid motions that nothing resists, where that takes no force, or none but what facets put on them.
 
     resistances: Gram matrices of supports and all contact, closed; constraints: the change of variables;
     stiffness: (n_free, n_free); loads: nodal forces (dim n_points,), at the end of each load step; neutral: motions that
-    contact resists by its facets alone.
+    contact resists by its facets alone; settled: where bodies move far (n_modes, k) motions that loads bring to rest: there
+    something else holds the neutral ones (``held_motions``).
     Raises SingularModelError for a motion on which loads do work, and for a body that nothing touches or loads.
     """
     motions = free_motions(resistances)
+    if neutral is not None and settled is not None:
+        motions = beyond(motions, np.concatenate([neutral.motions, settled], axis=1))
     notes: list[str] = []
     for groups, modes in _independent(rigid, motions):
         size, worst = _work(rigid, groups, modes, loads)
@@ -107,6 +111,8 @@ def free_mode_springs(
     ]
     tight, soft = (_springs(rigid, axes, constraints, stiffness, ()) for axes in (motions, faint))
     noise = float(neutral.noise.max(initial=0.0)) if faint.shape[1] else 0.0
+    if settled is not None:
+        return replace(tight, gram=tight.gram + soft.gram, notes=tuple(notes), noise=noise)
     return replace(
         tight,
         columns=np.concatenate([tight.columns, soft.columns]),

@@ -26,15 +26,35 @@ MOST = 4  # contacts of a body up to which each may be passed along either side 
 
 @dataclass(frozen=True)
 class Neutral:
-    """motions: (n_modes, m) of unit length; noise: (m,) share of the forces that facets may put on each."""
+    """motions: (n_modes, m) of unit length; noise: (m,) share of the forces that facets may put on each; fields:
+    m of (dim + 1, dim), the same at points, [x, 1] times this; group: (m,) numbers of the bodies that move; on: (m,) of
+    those whose surface glides on itself, with which the motion goes where they move far."""
 
     motions: Array
     noise: Array
+    fields: Sequence[Array]
+    group: NDArray[np.int64]
+    on: NDArray[np.int64]
+
+    def only(self, chosen: NDArray[np.bool_]) -> Neutral:
+        """Some of them, (m,)."""
+        fields = [field for field, one in zip(self.fields, chosen) if one]
+        return Neutral(self.motions[:, chosen], self.noise[chosen], fields, self.group[chosen], self.on[chosen])
 
     def beside(self, others: Array) -> Array:
         """All of them but for ``others`` (n_modes, k), orthonormal: (n_modes, j)."""
-        axes, size, _ = np.linalg.svd(self.motions - others @ (others.T @ self.motions), full_matrices=False)
-        return np.asarray(axes[:, size > SAME])
+        return _but_for(self.motions, others)
+
+
+def beyond(motions: Array, others: Array) -> Array:
+    """What of orthonormal motions (n_modes, k) none of ``others`` (n_modes, m) is, orthonormal: (n_modes, j)."""
+    return _but_for(motions, _but_for(others, others[:, :0]))
+
+
+def _but_for(motions: Array, others: Array) -> Array:
+    """The space of motions (n_modes, k) without that of others, orthonormal."""
+    axes, size, _ = np.linalg.svd(motions - others @ (others.T @ motions), full_matrices=False)
+    return np.asarray(axes[:, size > SAME])
 
 
 @dataclass(frozen=True)
@@ -51,7 +71,7 @@ def neutral_motions(rigid: RigidModes, held: Sequence[Array], pairs: Sequence[Pa
     """Motions of single groups of bodies along which each contact glides on one of its sides (Gelfand and Guibas 2004), to
     what its facets leave. held: resistance of supports, and of ties and friction."""
     free = free_motions(held)
-    found, noise = [np.zeros((len(free), 0))], [np.zeros(0)]
+    found, noise, fields, of, on = [np.zeros((len(free), 0))], [np.zeros(0)], list[Array](), list[int](), list[int]()
     sliding = [pair for pair in pairs if not (pair.two_way or pair.frictional) and len(pair)]
     if free.shape[1] and sliding:
         moves = _Moves(rigid, sliding[0].contactor.points)
@@ -62,12 +82,17 @@ def neutral_motions(rigid: RigidModes, held: Sequence[Array], pairs: Sequence[Pa
                 continue
             few = len(sides) <= MOST
             for chosen in product((0, 1), repeat=len(sides)) if few else [(0,) * len(sides), (1,) * len(sides)]:
-                slopes = [both[one] for both, one in zip(sides, chosen)]
+                slopes = [both.slopes[one] for both, one in zip(sides, chosen)]
                 if all(each is not None for each in slopes):
                     glides, share = _glides([each for each in slopes if each is not None])
                     found.append(own @ glides)
                     noise.append(share)
-    return Neutral(np.concatenate(found, axis=1), np.concatenate(noise))
+                    fields += list(moves.fields(own @ glides, group))
+                    of += [group] * len(share)
+                    on += [sides[0].other if chosen[0] else group] * len(share)
+    return Neutral(
+        np.concatenate(found, axis=1), np.concatenate(noise), fields, np.array(of, np.int64), np.array(on, np.int64)
+    )
 
 
 class _Moves:
@@ -89,6 +114,11 @@ class _Moves:
         """(n, dim, per_group) of a group at points x (n, dim)."""
         return np.einsum("na,adp->ndp", np.column_stack([x, np.ones(len(x))]), self.maps[group])
 
+    def fields(self, motions: Array, group: int) -> Array:
+        """Motions (n_modes, m) of a group as in ``Neutral``, (m, dim + 1, dim)."""
+        first = self.rigid.per_group * group
+        return np.einsum("adp,pm->mad", self.maps[group], motions[first : first + self.rigid.per_group])
+
 
 def _of_group(rigid: RigidModes, free: Array, group: int) -> Array:
     """The free motions (n_modes, k) of one group alone."""
@@ -99,10 +129,16 @@ def _of_group(rigid: RigidModes, free: Array, group: int) -> Array:
     return np.asarray(free @ alone.T)
 
 
-def _sides(
-    moves: _Moves, pairs: Sequence[Pair], group: int, own: Array
-) -> Iterator[tuple[_Slopes | None, _Slopes | None]]:
-    """For each contact of a group with another, its own side and the other's."""
+@dataclass(frozen=True)
+class _Sides:
+    """A contact of a group with another: slopes of its own side, and of the other's, None for none; number of the other."""
+
+    slopes: tuple[_Slopes | None, _Slopes | None]
+    other: int
+
+
+def _sides(moves: _Moves, pairs: Sequence[Pair], group: int, own: Array) -> Iterator[_Sides]:
+    """Each contact of a group with another."""
     first = moves.rigid.per_group * group
     motions = own[first : first + moves.rigid.per_group]
     for pair in pairs:
@@ -114,7 +150,7 @@ def _sides(
                 if other != group:
                     both = ((mine[0], mine[1][group]), (others[0], facets))
                     one, two = (_slopes(moves, surface, chosen, group, motions) for surface, chosen in both)
-                    yield one, two
+                    yield _Sides((one, two), other)
 
 
 def _by_group(moves: _Moves, surface: Surface, seen: NDArray[np.bool_]) -> tuple[Surface, dict[int, NDArray[np.int64]]]:

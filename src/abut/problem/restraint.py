@@ -84,6 +84,39 @@ class Restraint:
             chosen |= p.of_functions(clearance <= clearance.min() + 0.01)
         return result if self._holds(result) else np.ones_like(active)
 
+    def met_first(
+        self, force: NDArray[np.float64], active: NDArray[np.bool_], gap: NDArray[np.float64]
+    ) -> NDArray[np.bool_]:
+        """As ``complete``, with what bodies meet first on the way on which the loads move them, one body after another: of a
+        wheel with backlash the flanks that a torque turns together, not those that it turns apart. gap: not finite where
+        there is nothing to meet."""
+        if self.by_supports or self._holds(active):
+            return active
+        result = active.copy()
+        while (motion := self._moved(force, result)) is not None:
+            nearest = self._nearest(self.constraints.coordinates(self.rigid.modes @ motion), gap) & ~result
+            if not nearest.any():
+                return self.complete(force, result, gap)
+            result |= nearest
+        return result
+
+    def _nearest(self, way: NDArray[np.float64], gap: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """What a motion (n_free,) closes first, and what is within a hundredth of a facet then; of bodies as they were."""
+        clearances, closings = [], []
+        for p, g in zip(self.pairs, np.split(gap, np.cumsum([len(p) for p in self.pairs])[:-1])):
+            one_way = not p.two_way and len(p) > 0
+            unit = (p.scale * p.stiffness * p.size)[p.normal] if one_way else np.zeros(0)  # over the facet size
+            clearances.append(g[p.normal] / unit if one_way else unit)
+            closings.append(-(p.operator @ way)[p.normal] / unit if one_way else unit)
+        clearance, closing = np.concatenate(clearances), np.concatenate(closings)
+        meets = np.isfinite(clearance) & (closing > SLIGHT * np.abs(closing).max(initial=0.0))
+        if meets.any():
+            least = float((clearance[meets] / closing[meets]).min())
+            meets &= np.where(meets, clearance, 0.0) - least * closing <= 0.01
+        found = np.split(meets, np.cumsum([len(part) for part in closings])[:-1])
+        parts = [p.of_functions(near) if len(near) else np.zeros(len(p), bool) for p, near in zip(self.pairs, found)]
+        return np.concatenate([np.zeros(0, dtype=bool), *parts])
+
     def unbalanced(self, force: NDArray[np.float64]) -> str:
         """The motion, in words, that forces (n_free,) cause though contact pushes wherever it can; empty where there is
         none."""

@@ -1,0 +1,55 @@
+"""A wheel that a torque turns through its backlash into another: contact alone holds it, and is open at first."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import abut
+from abut.benchmarks.finite_gears import BASE, CENTRES, TEETH, gear, placed
+from abut.mesh.make import join
+
+PLASTIC = abut.LinearElastic(3000.0, 0.35)
+
+
+def driven(torque: float, friction: float = 0.0, play: float = 0.025) -> abut.Model:
+    """A pinion on its axle, which a torque turns, and a wheel whose hub is held: both flanks of all teeth may touch, and a
+    tooth of the pinion is in the middle of a gap. Lengths in mm, moduli in N/mm^2."""
+    pinion, wheel = (gear(teeth, 0, both=True, play=play, cell="quad4") for teeth in TEETH)
+    wheel = placed(wheel, np.pi + np.pi / TEETH[1], CENTRES)
+    return abut.Model(
+        join({"pinion": pinion, "wheel": wheel}), [abut.Solid("pinion", PLASTIC), abut.Solid("wheel", PLASTIC)],
+        [abut.Support("wheel.hub", x=0, y=0)], [abut.Moment("axle", torque)],
+        [abut.Contact("pinion.flanks", "wheel.flanks", friction=friction)],
+        couplings=[abut.Coupling("axle", "pinion.hub", "kinematic", reference=(0.0, 0.0), x=0.0, y=0.0)],
+        plane="strain", kinematics="finite",
+    )  # fmt: skip
+
+
+def ends(torque: float, friction: float = 0.0, play: float = 0.025) -> tuple[np.ndarray, float, abut.Solution]:
+    """The force on the pinion, its moment about the axle, and all of it."""
+    solution = abut.solve(driven(torque, friction, play))
+    assert solution.converged
+    resultant = solution.contacts[0].resultant
+    return resultant.force, float(resultant.moment[0]), solution
+
+
+def test_a_torque_turns_a_wheel_through_its_backlash() -> None:
+    """The moment of the contact force is the torque's; its arm the radius of the base circle, to the 2 % by which teeth bend
+    and facets turn. The other way round it is the mirror image, to what a cut of mirrored facets leaves. No step is taken
+    again, for the flanks that meet are those that the torque turns together: those that it turns apart are as near."""
+    force, moment, solution = ends(200.0)
+    assert moment == pytest.approx(-200.0, rel=1e-6)
+    assert 200.0 / np.linalg.norm(force) == pytest.approx(BASE[0], rel=0.02)
+    assert not any("did not converge" in note or "led to" in note for note in solution.notes)
+    mirrored, back, _ = ends(-200.0)
+    assert back == pytest.approx(200.0, rel=1e-6)
+    assert mirrored == pytest.approx(force * [1.0, -1.0], rel=1e-3)
+
+
+@pytest.mark.exhaustive
+@pytest.mark.parametrize(("friction", "play"), [(0.2, 0.025), (0.0, 0.4)])
+def test_with_friction_and_with_more_play(friction: float, play: float) -> None:
+    """By statics the moment is the torque's, whatever rubs and however far the way is."""
+    _, moment, _ = ends(200.0, friction, play)
+    assert moment == pytest.approx(-200.0, rel=1e-6)
