@@ -14,6 +14,7 @@ from abut.expression import Expression, Expressions
 from abut.io.atomic import write_text
 from abut.job.load import Job
 from abut.job.schema import JobFile
+from abut.materials.anisotropic import Anisotropic, Orthotropic
 from abut.materials.elastic import LinearElastic
 from abut.materials.hyperelastic import NeoHooke
 from abut.materials.logarithmic import Hencky
@@ -54,6 +55,7 @@ KINDS: dict[type, str] = {
 
 MATERIALS: dict[type, str] = {
     LinearElastic: "linear-elastic", NeoHooke: "neo-hooke", Hencky: "hencky", Plastic: "plastic",
+    Orthotropic: "orthotropic", Anisotropic: "anisotropic",
     MooneyRivlin: "mooney-rivlin", Yeoh: "yeoh", Ogden: "ogden", ArrudaBoyce: "arruda-boyce",
 }  # fmt: skip
 

@@ -18,6 +18,7 @@ from abut.job.material_tables import Materials
 from abut.job.other_names import key_called, kind_said
 from abut.job.schema import EquationTable, JobFile, MeshTable
 from abut.job.values import values
+from abut.materials.anisotropic import Anisotropic, Orthotropic
 from abut.materials.elastic import LinearElastic
 from abut.materials.hyperelastic import NeoHooke
 from abut.materials.logarithmic import Hencky
@@ -65,6 +66,7 @@ LOADS: Mapping[str, Callable[..., Load]] = {
 
 MATERIALS: Mapping[str, Callable[..., Material]] = {
     "linear-elastic": LinearElastic, "neo-hooke": NeoHooke, "hencky": Hencky, "plastic": Plastic,
+    "orthotropic": Orthotropic, "anisotropic": Anisotropic,
     "mooney-rivlin": MooneyRivlin, "yeoh": Yeoh, "ogden": Ogden, "arruda-boyce": ArrudaBoyce,
 }  # fmt: skip
 
@@ -177,7 +179,7 @@ def _equation(table: EquationTable, where: str) -> Equation:
 
 
 def _material(name: str, table: Materials) -> Material:
-    given = table.model_dump()
+    given = values(table, f"materials.{name}")
     try:
         return MATERIALS[given.pop("kind")](**given)
     except InputError as error:
