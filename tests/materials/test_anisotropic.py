@@ -259,8 +259,8 @@ def test_free_expansion(kinematics: str, cell: str) -> None:
 
 
 def test_heated_ring() -> None:
-    """Expansion along the radius other than around it stresses a free ring: u = A r + B / r + (1 - nu) d T r ln(r) / 2, d the
-    difference of both, in plane stress of otherwise isotropic material."""
+    """Expansion along the radius other than around it stresses a free ring: u = A r + B / r + (1 - nu) d T r ln(r) / 2, d
+    the difference of both, in plane stress of otherwise isotropic material."""
     young, nu, degrees, radial, hoop = 200.0, 0.3, 50.0, 3e-4, 1e-4
     law = abut.Orthotropic(
         [young] * 3, [nu] * 3, [young / (2 + 2 * nu)] * 3, axes=abut.Axes("cylindrical"), expansion=(radial, hoop, 0.0)

@@ -67,8 +67,8 @@ MEANINGS: dict[str, dict[str, str]] = {
     "AnisotropicTable": {
         "kind": "the material law: linear elastic, without symmetry",
         "constants": "stiffness, the upper triangle column after column, of 11 22 33 12 13 23, shear strains doubled: "
-        "D1111, D1122, D2222, D1133, D2233, D3333, D1112, D2212, D3312, D1212, D1113, D2213, D3313, D1213, D1313, D1123, D2223, "
-        "D3323, D1223, D1323, D2323 [force/length^2]",
+        "D1111, D1122, D2222, D1133, D2233, D3333, D1112, D2212, D3312, D1212, D1113, D2213, D3313, D1213, D1313, D1123, "
+        "D2223, D3323, D1223, D1323, D2323 [force/length^2]",
         "axes": "the local directions 1, 2, 3; in 2D the third is out of the plane, in axisymmetric models around the axis; "
         "left out: the global ones",
         "density": "mass per volume, used by gravity [mass/length^3]",

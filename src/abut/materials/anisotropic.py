@@ -231,8 +231,8 @@ def _check_poisson(young: Sequence[float], poisson: Sequence[float]) -> None:
         if not abs(nu) < limit:
             one, two = f"{i + 1}{j + 1}", f"{j + 1}{i + 1}"
             raise InputError(
-                f"poisson: nu{one} must lie within the square root of E{i + 1} / E{j + 1}, {limit:.6g}, got {nu!r}; nu{two} is "
-                f"nu{one} E{j + 1} / E{i + 1}: they may have been exchanged"
+                f"poisson: nu{one} must lie within the square root of E{i + 1} / E{j + 1}, {limit:.6g}, got {nu!r}; nu{two} "
+                f"is nu{one} E{j + 1} / E{i + 1}: they may have been exchanged"
             )
     (a, b, c), (ab, ac, bc) = young, poisson
     ba, ca, cb = ab * b / a, ac * c / a, bc * c / b
