@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from abut.materials.logarithmic import Hencky
     from abut.materials.plastic import Plastic
     from abut.materials.rubber import ArrudaBoyce, MooneyRivlin, Ogden, Yeoh
+    from abut.materials.temperature import OverTemperature
     from abut.mesh.mesh import Mesh
     from abut.model import (
         Amplitude,
@@ -62,6 +63,7 @@ _HOME = {  # of public names that do not come from abut.model
     "Hencky": "abut.materials.logarithmic", "Plastic": "abut.materials.plastic",
     **dict.fromkeys(("Anisotropic", "Orthotropic"), "abut.materials.anisotropic"),
     **dict.fromkeys(("ArrudaBoyce", "MooneyRivlin", "Ogden", "Yeoh"), "abut.materials.rubber"),
+    "OverTemperature": "abut.materials.temperature",
     "PressureOverclosure": "abut.contact.overclosure", "check": "abut.diagnosis",
 }  # fmt: skip
 
@@ -69,9 +71,10 @@ __all__ = [
     "AbutError", "Amplitude", "Anisotropic", "ArrudaBoyce", "Axes", "BodyForce", "Centrifugal", "Contact",
     "ConvergenceError", "Coupling", "Equation", "Force", "FoundContact", "Gravity", "Hencky", "InputError",
     "Integration", "LinearElastic", "Mesh", "Model", "Moment", "MooneyRivlin", "NeoHooke", "NodalForce", "Ogden",
-    "Orthotropic", "Output", "Plastic", "Preload", "Pressure", "PressureOverclosure", "Probe", "Rigid", "Rotation",
-    "SingularModelError", "Solid", "Solution", "SolveOptions", "Spring", "Support", "Temperature", "Term", "Traction",
-    "Yeoh", "add_surfaces", "check", "find_contacts", "plot", "solve", "to_pyvista", "write", "write_report",
+    "Orthotropic", "Output", "OverTemperature", "Plastic", "Preload", "Pressure", "PressureOverclosure", "Probe",
+    "Rigid", "Rotation", "SingularModelError", "Solid", "Solution", "SolveOptions", "Spring", "Support", "Temperature",
+    "Term", "Traction", "Yeoh", "add_surfaces", "check", "find_contacts", "plot", "solve", "to_pyvista", "write",
+    "write_report",
 ]  # fmt: skip
 
 

@@ -103,7 +103,8 @@ def test_written_and_read_again(path: Path, tmp_path: Path) -> None:
         (
             '"neo-hooke"',
             '"neohooke"',
-            "rubber.kind: expected one of 'linear-elastic', 'orthotropic', 'anisotropic', 'neo-hooke', 'hencky', 'plastic', "
+            "rubber.kind: expected one of 'linear-elastic', 'orthotropic', 'anisotropic', 'over-temperature', 'neo-hooke', "
+            "'hencky', 'plastic', "
             "'mooney-rivlin', 'yeoh', "
             "'ogden', 'arruda-boyce', got 'neohooke'",
         ),

@@ -21,6 +21,7 @@ from abut.materials.logarithmic import Hencky
 from abut.materials.material import Material
 from abut.materials.plastic import Plastic
 from abut.materials.rubber import ArrudaBoyce, MooneyRivlin, Ogden, Yeoh
+from abut.materials.temperature import OverTemperature
 from abut.mesh.write import write_mesh
 from abut.model import (
     Amplitude,
@@ -55,7 +56,7 @@ KINDS: dict[type, str] = {
 
 MATERIALS: dict[type, str] = {
     LinearElastic: "linear-elastic", NeoHooke: "neo-hooke", Hencky: "hencky", Plastic: "plastic",
-    Orthotropic: "orthotropic", Anisotropic: "anisotropic",
+    Orthotropic: "orthotropic", Anisotropic: "anisotropic", OverTemperature: "over-temperature",
     MooneyRivlin: "mooney-rivlin", Yeoh: "yeoh", Ogden: "ogden", ArrudaBoyce: "arruda-boyce",
 }  # fmt: skip
 
@@ -80,7 +81,8 @@ def job_table(model: Model, mesh: str) -> Json:
     for solid in model.solids:
         if type(solid.material) not in MATERIALS:
             raise InputError(f"solid '{solid.body}': job files know materials of abut's own only, not one of yours")
-        materials.setdefault(solid.material, f"material-{len(materials) + 1}")
+        for material in (*_parts(solid.material), solid.material):
+            materials.setdefault(material, f"material-{len(materials) + 1}")
     table: Json = {"schema": 1, "mesh": {"file": mesh}}
     table["model"] = {"plane": model.plane} if model.plane is not None else {}
     if model.finite:
@@ -88,6 +90,9 @@ def job_table(model: Model, mesh: str) -> Json:
     if not table["model"]:
         del table["model"]
     table["materials"] = {n: {"kind": MATERIALS[type(m)], **_plain(m)} for m, n in materials.items()}
+    for material, name in materials.items():
+        if _parts(material):
+            table["materials"][name]["materials"] = [materials[part] for part in _parts(material)]
     table["solids"] = [_plain(solid) | {"material": materials[solid.material]} for solid in model.solids]
     for name in (
         "supports",
@@ -110,6 +115,11 @@ def job_table(model: Model, mesh: str) -> Json:
     if options:
         table["solve"] = options
     return table
+
+
+def _parts(material: Material) -> Sequence[Material]:
+    """Materials that one is made of."""
+    return material.materials if isinstance(material, OverTemperature) else ()
 
 
 def _load(load: Load) -> Json:

@@ -63,6 +63,14 @@ class AnisotropicTable(LocalTable):
     constants: Annotated[list[Number], Field(min_length=21, max_length=21)]
 
 
+class OverTemperatureTable(Table):
+    kind: Literal["over-temperature"]
+    temperatures: Annotated[list[Number], Field(min_length=1)]
+    materials: Annotated[list[str], Field(min_length=1)]
+    initial_temperature: Number = 0.0
+    zero: Number | None = None
+
+
 class HenckyTable(Table):
     kind: Literal["hencky"]
     young: Number
@@ -118,4 +126,13 @@ class ArrudaBoyceTable(RubberTable):
 
 
 Rubber = MooneyRivlinTable | YeohTable | OgdenTable | ArrudaBoyceTable
-Materials = MaterialTable | OrthotropicTable | AnisotropicTable | NeoHookeTable | HenckyTable | PlasticTable | Rubber
+Materials = (
+    MaterialTable
+    | OrthotropicTable
+    | AnisotropicTable
+    | OverTemperatureTable
+    | NeoHookeTable
+    | HenckyTable
+    | PlasticTable
+    | Rubber
+)
