@@ -89,7 +89,7 @@ def job_table(model: Model, mesh: str) -> Json:
         table["model"]["kinematics"] = model.kinematics
     if not table["model"]:
         del table["model"]
-    table["materials"] = {n: {"kind": MATERIALS[type(m)], **_plain(m)} for m, n in materials.items()}
+    table["materials"] = {n: material_table(m) for m, n in materials.items()}
     for material, name in materials.items():
         if _parts(material):
             table["materials"][name]["materials"] = [materials[part] for part in _parts(material)]
@@ -115,6 +115,11 @@ def job_table(model: Model, mesh: str) -> Json:
     if options:
         table["solve"] = options
     return table
+
+
+def material_table(material: Material) -> Json:
+    """One of abut's own materials as a table of a job file, those that it is made of aside."""
+    return {"kind": MATERIALS[type(material)], **_plain(material)}
 
 
 def _parts(material: Material) -> Sequence[Material]:
