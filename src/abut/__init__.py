@@ -11,11 +11,13 @@ if TYPE_CHECKING:
     from abut.contact.overclosure import PressureOverclosure
     from abut.detection import FoundContact, add_surfaces, find_contacts
     from abut.diagnosis import check
+    from abut.materials.anisotropic import Anisotropic, Orthotropic
     from abut.materials.elastic import LinearElastic
     from abut.materials.hyperelastic import NeoHooke
     from abut.materials.logarithmic import Hencky
     from abut.materials.plastic import Plastic
     from abut.materials.rubber import ArrudaBoyce, MooneyRivlin, Ogden, Yeoh
+    from abut.materials.temperature import OverTemperature
     from abut.mesh.mesh import Mesh
     from abut.model import (
         Amplitude,
@@ -59,17 +61,20 @@ _HOME = {  # of public names that do not come from abut.model
     "LinearElastic": "abut.materials.elastic", "FoundContact": "abut.detection", "add_surfaces": "abut.detection",
     "find_contacts": "abut.detection", "NeoHooke": "abut.materials.hyperelastic",
     "Hencky": "abut.materials.logarithmic", "Plastic": "abut.materials.plastic",
+    **dict.fromkeys(("Anisotropic", "Orthotropic"), "abut.materials.anisotropic"),
     **dict.fromkeys(("ArrudaBoyce", "MooneyRivlin", "Ogden", "Yeoh"), "abut.materials.rubber"),
+    "OverTemperature": "abut.materials.temperature",
     "PressureOverclosure": "abut.contact.overclosure", "check": "abut.diagnosis",
 }  # fmt: skip
 
 __all__ = [
-    "AbutError", "Amplitude", "ArrudaBoyce", "Axes", "BodyForce", "Centrifugal", "Contact", "ConvergenceError", "Coupling",
-    "Equation", "Force", "FoundContact", "Gravity", "Hencky", "InputError", "Integration", "LinearElastic", "Mesh",
-    "Model", "Moment", "MooneyRivlin", "NeoHooke", "NodalForce", "Ogden", "Output", "Plastic", "Preload", "Pressure",
-    "PressureOverclosure", "Probe", "Rigid", "Rotation", "SingularModelError", "Solid", "Solution", "SolveOptions",
-    "Spring", "Support", "Temperature", "Term", "Traction", "Yeoh", "add_surfaces", "check", "find_contacts", "plot",
-    "solve", "to_pyvista", "write", "write_report",
+    "AbutError", "Amplitude", "Anisotropic", "ArrudaBoyce", "Axes", "BodyForce", "Centrifugal", "Contact",
+    "ConvergenceError", "Coupling", "Equation", "Force", "FoundContact", "Gravity", "Hencky", "InputError",
+    "Integration", "LinearElastic", "Mesh", "Model", "Moment", "MooneyRivlin", "NeoHooke", "NodalForce", "Ogden",
+    "Orthotropic", "Output", "OverTemperature", "Plastic", "Preload", "Pressure", "PressureOverclosure", "Probe",
+    "Rigid", "Rotation", "SingularModelError", "Solid", "Solution", "SolveOptions", "Spring", "Support", "Temperature",
+    "Term", "Traction", "Yeoh", "add_surfaces", "check", "find_contacts", "plot", "solve", "to_pyvista", "write",
+    "write_report",
 ]  # fmt: skip
 
 

@@ -68,14 +68,14 @@ def told(tmp_path, text):
 def test_reasons_of_every_stage_come_at_once_in_the_order_of_the_deck(tmp_path):
     """Cards refused, an element type, a material, a missing name, a number and a load, each where it stands, once."""
     text = (
-        DECK.replace("*ELASTIC", "*ELASTIC, TYPE=ORTHO")
+        DECK.replace("*ELASTIC", "*ELASTIC, TYPE=LAMINA")
         .replace("PRESSURE-OVERCLOSURE=HARD", "PRESSURE-OVERCLOSURE=SOFT")
         .replace("*BOUNDARY", "*VISCOELASTIC\n1., 0.\n*BOUNDARY")
         .replace("*STEP", "*EQUATION\n2\n1, 1, 1.\n*STEP, PERTURBATION")
         .replace("*STATIC", "*STATIC\n*CLOAD\n18, 7, 1.\n*BOUNDARY\n1, 9\n")
     )
     lines = text.splitlines()
-    expected = ["*ELASTIC: TYPE=ORTHO", "*SURFACE BEHAVIOR: PRESSURE-OVERCLOSURE=SOFT", "*VISCOELASTIC: ",
+    expected = ["*ELASTIC: TYPE=LAMINA", "*SURFACE BEHAVIOR: PRESSURE-OVERCLOSURE=SOFT", "*VISCOELASTIC: ",
                 "*EQUATION: 2 terms", "*STEP: PERTURBATION", "*CLOAD: direction 7", "*BOUNDARY: directions 9"]  # fmt: skip
     starts = ["*ELASTIC", "*SURFACE BEHAVIOR", "*VISCOELASTIC", "*EQUATION", "*STEP", "18, 7", "1, 9"]
     own = told(tmp_path, text)
@@ -172,8 +172,9 @@ def test_penalty_is_replaced_with_a_note(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ("1000., 0.", "1000., 0., 20.\n900., 0., 100.", r"several rows.* give one row"),
-        ("*ELASTIC", "*ELASTIC, TYPE=ORTHO", "TYPE=ORTHO is not supported; abut's solids are isotropic"),
+        ("1000., 0.", "1000., 0., 20.\n900., 0., 10.", "temperature: must grow from row to row, got 10 after 20"),
+        ("*ELASTIC", "*ELASTIC, TYPE=LAMINA", "TYPE=LAMINA is not supported; abut knows ISO, ORTHO"),
+        ("*ELASTIC", "*ELASTIC, TYPE=ORTHO", "expected 9 numbers in 2 lines"),
         ("1000., 0.", "-1000., 0.", "young"),
         ("*ELASTIC\n1000., 0.\n", "", r"material 'EL' has no \*ELASTIC"),
         ("MATERIAL=EL\n", "MATERIAL=AL\n", "no material named 'AL'; known: EL"),

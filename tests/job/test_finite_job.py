@@ -103,7 +103,9 @@ def test_written_and_read_again(path: Path, tmp_path: Path) -> None:
         (
             '"neo-hooke"',
             '"neohooke"',
-            "rubber.kind: expected one of 'linear-elastic', 'neo-hooke', 'hencky', 'plastic', 'mooney-rivlin', 'yeoh', "
+            "rubber.kind: expected one of 'linear-elastic', 'orthotropic', 'anisotropic', 'over-temperature', 'neo-hooke', "
+            "'hencky', 'plastic', "
+            "'mooney-rivlin', 'yeoh', "
             "'ogden', 'arruda-boyce', got 'neohooke'",
         ),
         ('kind = "neo-hooke"', "", "materials.rubber.kind: missing"),

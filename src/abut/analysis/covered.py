@@ -63,7 +63,7 @@ def covered(
 def _planes_now(problem: ContactProblem, kind: Current, pair: Pair) -> Planes:
     """Of symmetry, at which a contactor ends now."""
     border = rim_of_sides(pair.contactor)
-    return planes_of(problem.model.mesh, pair.contactor, border, kind.goes_on(pair, border), problem.constraints)
+    return planes_of(problem.model, pair.contactor, border, kind.goes_on(pair, border), problem.constraints)
 
 
 def whole_supports(problem: ContactProblem, pairs: Sequence[Pair], keep: NDArray[np.bool_]) -> list[Array | None]:

@@ -11,6 +11,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.analysis.surface_slopes import SurfacePoints, surface_stress
+from abut.bodies.mirror import mirrors
 from abut.bodies.recovery import Equations
 from abut.bodies.solids import TemperatureChange
 from abut.cells import MAX_FACET_NODES
@@ -174,7 +175,10 @@ def _add_supports(model: Model, skin: _Skin) -> None:
     alone = (whole.sum(axis=1) == 1) & ~skin.touching(moved, False) & (skin.source == 0)
     for axis in range(dim):
         along = np.abs(np.delete(normal, axis, axis=1)).max(axis=1) < ALONG
-        skin.mirrored[:, axis] = alone & whole[:, axis] & along
+        flat = np.flatnonzero(alone & whole[:, axis] & along)
+        cells, middle = skin.surface.cells[flat], mesh.points[skin.surface.nodes[flat, 0]]
+        across = np.broadcast_to(np.eye(dim)[axis], middle.shape)
+        skin.mirrored[flat, axis] = mirrors(model.deformable, cells, middle, across)
     if mesh.axisymmetric:
         radius = np.abs(mesh.points[:, 0])
         axis_nodes = radius <= 1e-9 * radius.max(initial=0.0)

@@ -14,6 +14,7 @@ from abut._core import shape_functions
 from abut.bodies.solids import Solids, TemperatureChange
 from abut.bodies.surface_law import Along, known_law, stress_along
 from abut.cells import CELLS
+from abut.materials.places import Places, is_local, placed, uniform_expansion
 from abut.mesh.mesh import Mesh
 from abut.mesh.reference import reference_nodes
 from abut.mesh.surface import Surface
@@ -51,15 +52,16 @@ def surface_stress(
     body, finite = solids.body_of[skin.cells[some]], solids.kinematics == "finite"
     for number, (name, material) in enumerate(solids.materials.items()):
         here = body == number
-        evaluate = known_law(material, finite, solids.plane)
-        if evaluate is None or not here.any():
+        if not here.any():
             continue
         change = np.full(int(here.sum()), temperature.bodies.get(name, 0.0))
         if temperature.nodes is not None:
             change += temperature.nodes[points.node[here]]
-        if finite and (material.expansion * change).any():
+        local = placed(material, Places(solids.points[points.node[here]], change))
+        evaluate, expansion = known_law(local, finite, solids.plane), uniform_expansion(material)
+        if evaluate is None or (finite and change.any() and (is_local(material) or expansion)):
             continue
-        at.thermal[here] = material.expansion * change
+        at.thermal[here] = expansion * change
         stress[here], found[here] = stress_along(evaluate, material.modulus, finite, solids.plane, at.part(here))
     return stress[:, : 4 if dim == 2 else 6], found
 

@@ -93,7 +93,7 @@ def thermal_load(solids: Solids, temperature: TemperatureChange) -> Array:
     """int B^T D eps_thermal of linear bodies, theory (F10), (dim n_points,): the forces that would expand them freely.
     Integrated like the stiffness, so that a temperature whose strain the elements can follow leaves no stress; "b-bar" takes
     the mean over each cell, as for the dilatation."""
-    if all(temperature.strain(solids, group) is None for group in solids.groups()):
+    if not temperature.acts(solids):
         return np.zeros(solids.points.size)
     return -internal_force(solids, np.zeros(solids.points.shape), temperature)
 

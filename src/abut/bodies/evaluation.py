@@ -8,15 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
-from abut._core import Cells, finite_strains, strains
+from abut._core import Cells, finite_strains, shape_functions, strains
 from abut.bodies.inverted import require_sound
 from abut.bodies.solids import Array, Group, Solids, TemperatureChange
+from abut.cells import CELLS
 from abut.errors import InputError
 from abut.materials.material import Evaluated, FiniteMaterial
-from abut.materials.plane_stress import law
+from abut.materials.places import Places, is_local, placed
+from abut.materials.plane_stress import Evaluate, law
 from abut.mesh.quadrature import Rule
 
 History = Mapping[str, Array]  # by body, of materials that are not integrated together: (points, h)
@@ -44,11 +47,13 @@ def evaluate(
     Raises InputError for a material that returns other shapes, and Inverted under finite strains."""
     material, finite = solids.materials[group.body], solids.kinematics == "finite"
     where = f"material of body '{group.body}'"
-    told = material.evaluate_finite if finite and isinstance(material, FiniteMaterial) else material.evaluate
-    respond = law(lambda *at: _checked(told(*at), at[1].shape, where), solids.plane)
     moved = np.zeros(solids.points.shape) if displacement is None else displacement
     for part in group.portions(rule):
-        cells, thermal = part.arrays(solids, rule), temperature.strain(solids, part)
+        cells = part.arrays(solids, rule)
+        thermal = None if is_local(material) else temperature.strain(solids, part)
+        here = placed(material, places(solids, part, rule, temperature)) if is_local(material) else material
+        told = here.evaluate_finite if finite and isinstance(here, FiniteMaterial) else here.evaluate
+        respond = law(partial(_asked, told, where), solids.plane)
         if finite:
             strain, unsound = finite_strains(cells, moved, thermal)
             require_sound(solids, part, unsound)
@@ -57,6 +62,21 @@ def evaluate(
         rows = slice(part.first, part.first + len(strain))
         before = history[group.body][rows] if history else material.initial(len(strain))
         yield Part(cells, thermal), *respond(strain, before)
+
+
+def places(solids: Solids, group: Group, rule: Rule, temperature: TemperatureChange) -> Places:
+    """Where the points of a rule are, and how much warmer. Mixed cells see of the temperature what their pressures do."""
+    shapes, _ = shape_functions(CELLS[group.kind].code, np.ascontiguousarray(rule[0]))
+    points = (shapes @ solids.points[group.nodes]).reshape(-1, solids.points.shape[1])
+    degrees = temperature.degrees(solids, group)
+    if degrees is None:
+        return Places(points, np.zeros(len(points)))
+    unmoved = strains(group.arrays(solids, rule), np.zeros(solids.points.shape), degrees)  # less one by degree
+    return Places(points, -unmoved[:, 0])
+
+
+def _asked(told: Evaluate, where: str, strain: Array, history: Array) -> Evaluated:
+    return _checked(told(strain, history), history.shape, where)
 
 
 def _checked(result: Evaluated, history: tuple[int, ...], where: str) -> Evaluated:

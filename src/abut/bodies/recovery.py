@@ -14,6 +14,7 @@ from abut.bodies.solids import UNHEATED, Array, Group, Solids, TemperatureChange
 from abut.bodies.stress import PointStress, point_stress
 from abut.cells import CELLS
 from abut.materials.material import Material, linear
+from abut.materials.places import Places, is_local, placed
 from abut.mesh.patches import Patches
 from abut.mesh.quadrature import Rule, error_rule, superconvergent_rule
 from abut.types import Sparse
@@ -107,14 +108,14 @@ def energies(solids: Solids, points: Array, stress: PointStress, values: Array) 
     """Of each cell (n_cells, 3) int e C^-1 e of the recovered less the element's stress, the same of the recovered one, and
     the volume; theory (Z6). values: (n_values, 6)."""
     of, result = solids.patches, np.zeros((solids.mesh.n_cells, 3))
-    compliance = np.stack([_compliance(material) for material in solids.materials.values()])
+    compliance, which = _compliances(solids)
     for group, at in zip(solids.groups(), stress):
         rule = error_rule(group.kind)
         shapes, derivatives = shape_functions(CELLS[group.kind].code, np.ascontiguousarray(rule[0]))
         at = np.ascontiguousarray(carried(group.kind, group.rule, rule[0]) @ at).reshape(-1, 6)
         result[group.cells] = stress_errors(
             points, group.nodes, (shapes, derivatives, rule[1]), solids.mesh.axisymmetric, at,
-            (_own(solids, of, group), values), (compliance, solids.body_of[group.cells]),
+            (_own(solids, of, group), values), (compliance, which[group.cells]),
         )  # fmt: skip
     return result
 
@@ -122,6 +123,24 @@ def energies(solids: Solids, points: Array, stress: PointStress, values: Array) 
 def _own(solids: Solids, of: Patches, group: Group) -> NDArray[np.int32]:
     block = int(np.searchsorted(solids.mesh.starts, group.cells[0], side="right")) - 1
     return np.ascontiguousarray(of.nodes[block][group.cells - solids.mesh.starts[block]])
+
+
+def _compliances(solids: Solids) -> tuple[Array, NDArray[np.int32]]:
+    """(k, 6, 6) at rest, and which each cell has, (n_cells,): that of its body, or one in its own middle."""
+    which = solids.body_of.copy()
+    found = []
+    for number, material in enumerate(solids.materials.values()):
+        if not is_local(material):
+            found.append(_compliance(material)[None])
+            which[solids.body_of == number] = sum(map(len, found)) - 1
+            continue
+        cells = np.flatnonzero(solids.body_of == number)
+        centre = _spread(solids, solids.points)[cells, 0]
+        here = placed(material, Places(centre, np.zeros(len(cells))))
+        tangent = here.evaluate(np.zeros((len(cells), 6)), here.initial(len(cells)))[1]
+        which[cells] = sum(map(len, found)) + np.arange(len(cells))
+        found.append(np.asarray(np.linalg.pinv(tangent, hermitian=True), dtype=float))
+    return np.concatenate(found), which
 
 
 def _compliance(material: Material) -> Array:

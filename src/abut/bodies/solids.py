@@ -13,6 +13,7 @@ from abut._core import Cells, node_pattern, shape_functions
 from abut.cells import CELLS
 from abut.materials.kernel import Kernel
 from abut.materials.material import Material, compiled
+from abut.materials.places import is_local, uniform_expansion
 from abut.mesh.mesh import Mesh
 from abut.mesh.patches import Patches, patches
 from abut.mesh.quadrature import PRESSURES, Rule, cell_rule
@@ -147,18 +148,32 @@ class TemperatureChange:
     def strain(self, solids: Solids, group: Group) -> Array | None:
         """Thermal strain of a group's cells at their nodes, (cells, n_nodes), alike in all directions; None where there is
         none."""
-        bodies = [body for body, material in solids.materials.items() if material.expansion]
-        heated = self.nodes is not None and self.nodes.any()
-        if not bodies or not (heated or any(self.bodies.get(body) for body in bodies)):
+        table = {body: (uniform_expansion(material),) for body, material in solids.materials.items()}
+        if not any(expansion for (expansion,) in table.values()):
             return None
-        table = {body: (m.expansion, self.bodies.get(body, 0.0)) for body, m in solids.materials.items()}
-        expansion, uniform = solids.by_cell(group, table).T[..., None]
+        degrees = self.degrees(solids, group)
+        return None if degrees is None else np.ascontiguousarray(solids.by_cell(group, table) * degrees)
+
+    def degrees(self, solids: Solids, group: Group) -> Array | None:
+        """Change of a group's cells at their nodes, (cells, n_nodes); None where there is none."""
+        heated = self.nodes is not None and self.nodes.any()
+        if not (heated or any(self.bodies.get(body) for body in solids.materials)):
+            return None
+        uniform = solids.by_cell(group, {body: (self.bodies.get(body, 0.0),) for body in solids.materials})
         change = (
             np.broadcast_to(uniform, group.nodes.shape) if self.nodes is None else uniform + self.nodes[group.nodes]
         )
         if CELLS[group.kind].degree == 1:  # whose strains cannot follow what varies within a cell
             change = np.broadcast_to(change.mean(axis=1, keepdims=True), group.nodes.shape)
-        return np.ascontiguousarray(expansion * change)
+        return np.ascontiguousarray(change)
+
+    def acts(self, solids: Solids) -> bool:
+        """Whether some body may be strained."""
+        for group in solids.groups():
+            local = group.body and is_local(solids.materials[group.body])
+            if (self.degrees if local else self.strain)(solids, group) is not None:
+                return True
+        return False
 
 
 UNHEATED = TemperatureChange()

@@ -1,4 +1,4 @@
-"""The command line: abut run, check, convert, verify, infsup, schema."""
+"""The command line: abut run, check, convert, verify, infsup, fit, schema."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from typing import Any
 
 from abut.cli.check import add_check
 from abut.cli.convert import add_convert
+from abut.cli.fit import add_fit
 from abut.cli.run import add_run, passes_on
 from abut.cli.terminal import shortened, show
 from abut.cli.verify import add_infsup, add_verify
@@ -122,6 +123,7 @@ def _parser() -> argparse.ArgumentParser:
     add_convert(commands)
     add_verify(commands)
     add_infsup(commands)
+    add_fit(commands)
     schema = commands.add_parser(
         "schema",
         help="print the JSON Schema of job files, for editors",

@@ -14,6 +14,7 @@ from abut.contact.sides import bodies_of, find_sides
 from abut.decks.body_loads import body_loads
 from abut.decks.clearance import adjusted, bilateral_note, gap_options
 from abut.decks.couplings import couplings, reference_loads, reference_nodes, unlisted_notes
+from abut.decks.elastic import elastic_law
 from abut.decks.friction import friction_options, path_notes
 from abut.decks.large import finite_notes, is_finite, load_steps, plastic_steps, unsupported, yields
 from abut.decks.overclosure import overclosure_notes, own_laws, softened
@@ -31,7 +32,6 @@ from abut.io.deck.reasons import DeckError, Reasons
 from abut.io.deck.record import Deck, GeneralContact, Numbers, Pair
 from abut.io.deck.ties import near, tie_notes
 from abut.io.deck.time_histories import Course, combine, courses, scaled, times, zero
-from abut.materials.elastic import LinearElastic
 from abut.materials.material import Material
 from abut.materials.plastic import Plastic
 from abut.mesh.check import check_mesh
@@ -111,7 +111,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     for pair in deck.pairs:
         with reasons.gathered():
             contacts.append(_contact(deck, groups, pair, hard, notes))
-    solids = _solids({name: piece for name, piece in parts.items() if name not in moving}, reasons)
+    solids = _solids(deck, {name: piece for name, piece in parts.items() if name not in moving}, plane, reasons)
     rigid, bound = _referenced(deck, groups, moving, plane, reasons)
     notes += [*_idle(deck, groups), *unlisted_notes(deck)]
     references = dict(zip([*moving, *(coupling.name for coupling in bound)], reference_nodes(deck)))
@@ -208,17 +208,17 @@ def _idle(deck: Deck, groups: Groups) -> list[str]:
     return list(notes)
 
 
-def _solids(parts: Mapping[str, Piece], reasons: Reasons) -> list[Solid]:
+def _solids(deck: Deck, parts: Mapping[str, Piece], plane: str | None, reasons: Reasons) -> list[Solid]:
     result: list[Solid] = []
     for name, piece in parts.items():
         with reasons.gathered():
-            result.append(_solid(name, piece))
+            result.append(_solid(deck, name, piece, plane))
     return result
 
 
-def _solid(name: str, piece: Piece) -> Solid:
+def _solid(deck: Deck, name: str, piece: Piece, plane: str | None) -> Solid:
     material = piece.section.material
-    (a, b), rest = material.constants, (material.density, material.expansion)
+    (a, b, *_), rest = material.elastic.rows[0][1], (material.density, material.expansion.rows[0][1][0])
     law: Material
     try:
         if material.rubber is not None:
@@ -226,7 +226,7 @@ def _solid(name: str, piece: Piece) -> Solid:
         elif (metal := material.hardening) is not None:
             law = Plastic(a, b, metal.table, backstresses=metal.backstresses, density=rest[0], expansion=rest[1])
         else:
-            law = LinearElastic(a, b, *rest)
+            law = elastic_law(deck, piece, 3 if plane is None else 2)
     except InputError as error:
         raise DeckError(material.place, f"*MATERIAL '{material.name}': {error}") from None
     return Solid(name, law, integration=piece.integration)

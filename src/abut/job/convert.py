@@ -14,12 +14,14 @@ from abut.expression import Expression, Expressions
 from abut.io.atomic import write_text
 from abut.job.load import Job
 from abut.job.schema import JobFile
+from abut.materials.anisotropic import Anisotropic, Orthotropic
 from abut.materials.elastic import LinearElastic
 from abut.materials.hyperelastic import NeoHooke
 from abut.materials.logarithmic import Hencky
 from abut.materials.material import Material
 from abut.materials.plastic import Plastic
 from abut.materials.rubber import ArrudaBoyce, MooneyRivlin, Ogden, Yeoh
+from abut.materials.temperature import OverTemperature
 from abut.mesh.write import write_mesh
 from abut.model import (
     Amplitude,
@@ -54,6 +56,7 @@ KINDS: dict[type, str] = {
 
 MATERIALS: dict[type, str] = {
     LinearElastic: "linear-elastic", NeoHooke: "neo-hooke", Hencky: "hencky", Plastic: "plastic",
+    Orthotropic: "orthotropic", Anisotropic: "anisotropic", OverTemperature: "over-temperature",
     MooneyRivlin: "mooney-rivlin", Yeoh: "yeoh", Ogden: "ogden", ArrudaBoyce: "arruda-boyce",
 }  # fmt: skip
 
@@ -78,14 +81,18 @@ def job_table(model: Model, mesh: str) -> Json:
     for solid in model.solids:
         if type(solid.material) not in MATERIALS:
             raise InputError(f"solid '{solid.body}': job files know materials of abut's own only, not one of yours")
-        materials.setdefault(solid.material, f"material-{len(materials) + 1}")
+        for material in (*_parts(solid.material), solid.material):
+            materials.setdefault(material, f"material-{len(materials) + 1}")
     table: Json = {"schema": 1, "mesh": {"file": mesh}}
     table["model"] = {"plane": model.plane} if model.plane is not None else {}
     if model.finite:
         table["model"]["kinematics"] = model.kinematics
     if not table["model"]:
         del table["model"]
-    table["materials"] = {n: {"kind": MATERIALS[type(m)], **_plain(m)} for m, n in materials.items()}
+    table["materials"] = {n: material_table(m) for m, n in materials.items()}
+    for material, name in materials.items():
+        if _parts(material):
+            table["materials"][name]["materials"] = [materials[part] for part in _parts(material)]
     table["solids"] = [_plain(solid) | {"material": materials[solid.material]} for solid in model.solids]
     for name in (
         "supports",
@@ -108,6 +115,16 @@ def job_table(model: Model, mesh: str) -> Json:
     if options:
         table["solve"] = options
     return table
+
+
+def material_table(material: Material) -> Json:
+    """One of abut's own materials as a table of a job file, those that it is made of aside."""
+    return {"kind": MATERIALS[type(material)], **_plain(material)}
+
+
+def _parts(material: Material) -> Sequence[Material]:
+    """Materials that one is made of."""
+    return material.materials if isinstance(material, OverTemperature) else ()
 
 
 def _load(load: Load) -> Json:

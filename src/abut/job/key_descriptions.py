@@ -53,6 +53,36 @@ MEANINGS: dict[str, dict[str, str]] = {
         "density": "mass per volume, used by gravity [mass/length^3]",
         "expansion": "thermal expansion, used by temperature changes [1/temperature]",
     },
+    "OrthotropicTable": {
+        "kind": "the material law: linear elastic, with three planes of symmetry",
+        "young": "Young's moduli E1, E2, E3, > 0 [force/length^2]",
+        "poisson": "nu12, nu13, nu23; nu12 is the strain along 2 over the one along 1 under a stress along 1, sign turned; "
+        "nu21 = nu12 E2 / E1",
+        "shear": "shear moduli G12, G13, G23, > 0 [force/length^2]",
+        "axes": "the local directions 1, 2, 3; in 2D the third is out of the plane, in axisymmetric models around the axis; "
+        "left out: the global ones",
+        "density": "mass per volume, used by gravity [mass/length^3]",
+        "expansion": "thermal expansion, a number or one along each local direction [1/temperature]",
+    },
+    "AnisotropicTable": {
+        "kind": "the material law: linear elastic, without symmetry",
+        "constants": "stiffness, the upper triangle column after column, of 11 22 33 12 13 23, shear strains doubled: "
+        "D1111, D1122, D2222, D1133, D2233, D3333, D1112, D2212, D3312, D1212, D1113, D2213, D3313, D1213, D1313, D1123, "
+        "D2223, D3323, D1223, D1323, D2323 [force/length^2]",
+        "axes": "the local directions 1, 2, 3; in 2D the third is out of the plane, in axisymmetric models around the axis; "
+        "left out: the global ones",
+        "density": "mass per volume, used by gravity [mass/length^3]",
+        "expansion": "thermal expansion, a number or one along each local direction [1/temperature]",
+    },
+    "OverTemperatureTable": {
+        "kind": "linear elasticity between other materials at some temperatures",
+        "temperatures": "at which these are, growing [temperature]",
+        "materials": "names of materials of kind linear-elastic, or of orthotropic and anisotropic ones with the same axes; "
+        "constants are linear between, and constant beyond",
+        "initial_temperature": "temperature at the beginning, from which changes count [temperature]",
+        "zero": "temperature from which expansions count, secants alpha(T) of alpha(T) (T - zero); left out: "
+        "initial_temperature [temperature]",
+    },
     "NeoHookeTable": {
         "kind": "the material law, for finite kinematics",
         "young": "Young's modulus at small strains, > 0; with poisson [force/length^2]",

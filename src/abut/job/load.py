@@ -14,16 +14,18 @@ from abut.contact.overclosure import PressureOverclosure
 from abut.errors import InputError, nearest
 from abut.io.toml import read_toml
 from abut.job.contacts import Resolved, resolve_contacts
-from abut.job.material_tables import Materials
+from abut.job.material_tables import Materials, OverTemperatureTable
 from abut.job.other_names import key_called, kind_said
 from abut.job.schema import EquationTable, JobFile, MeshTable
 from abut.job.values import values
+from abut.materials.anisotropic import Anisotropic, Orthotropic
 from abut.materials.elastic import LinearElastic
 from abut.materials.hyperelastic import NeoHooke
 from abut.materials.logarithmic import Hencky
 from abut.materials.material import Material
 from abut.materials.plastic import Plastic
 from abut.materials.rubber import ArrudaBoyce, MooneyRivlin, Ogden, Yeoh
+from abut.materials.temperature import OverTemperature
 from abut.mesh import make
 from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
@@ -65,6 +67,7 @@ LOADS: Mapping[str, Callable[..., Load]] = {
 
 MATERIALS: Mapping[str, Callable[..., Material]] = {
     "linear-elastic": LinearElastic, "neo-hooke": NeoHooke, "hencky": Hencky, "plastic": Plastic,
+    "orthotropic": Orthotropic, "anisotropic": Anisotropic, "over-temperature": OverTemperature,
     "mooney-rivlin": MooneyRivlin, "yeoh": Yeoh, "ogden": Ogden, "arruda-boyce": ArrudaBoyce,
 }  # fmt: skip
 
@@ -139,7 +142,7 @@ def _deck(path: Path, refine: int, ignore: Collection[str], soft: bool) -> Job:
 
 
 def _model(file: JobFile, folder: Path, refine: int) -> tuple[Model, Resolved]:
-    materials = {name: _material(name, table) for name, table in file.materials.items()}
+    materials = _materials(file.materials)
     solids = []
     for i, s in enumerate(file.solids):
         if s.material not in materials:
@@ -176,8 +179,20 @@ def _equation(table: EquationTable, where: str) -> Equation:
         raise InputError(str(error) if str(error).startswith(where) else f"{where}: {error}") from None
 
 
-def _material(name: str, table: Materials) -> Material:
-    given = table.model_dump()
+def _materials(tables: Mapping[str, Materials]) -> dict[str, Material]:
+    """By name; those made of others come after these."""
+    made = {n: _material(n, table, {}) for n, table in tables.items() if not isinstance(table, OverTemperatureTable)}
+    return {name: made.get(name) or _material(name, table, made) for name, table in tables.items()}
+
+
+def _material(name: str, table: Materials, others: Mapping[str, Material]) -> Material:
+    given = values(table, f"materials.{name}")
+    if isinstance(table, OverTemperatureTable):
+        for i, other in enumerate(table.materials):
+            if other not in others:
+                where = f"materials.{name}.materials[{i}]"
+                raise InputError(f"{where}: no other material named {other!r}{nearest(other, others)}")
+        given["materials"] = tuple(others[other] for other in table.materials)
     try:
         return MATERIALS[given.pop("kind")](**given)
     except InputError as error:

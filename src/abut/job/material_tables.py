@@ -6,8 +6,11 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from abut.axes import KINDS as AXES
 from abut.job.table import Number, OneOf, Table
 from abut.materials.hyperelastic import VOLUMETRIC
+
+Three = Annotated[list[Number], Field(min_length=3, max_length=3)]
 
 
 class MaterialTable(Table):
@@ -30,6 +33,42 @@ class NeoHookeTable(Table):
     volumetric: Annotated[str, OneOf(VOLUMETRIC)] = VOLUMETRIC[0]
     density: Number = 0.0
     expansion: Number = 0.0
+
+
+class AxesTable(Table):
+    """local axes at each point"""
+
+    kind: Annotated[str, OneOf(AXES)] = AXES[0]
+    origin: list[Number] | None = None
+    axis: list[Number] | None = None
+    x: list[Number] | None = None
+    xy: list[Number] | None = None
+
+
+class LocalTable(Table):
+    axes: AxesTable | None = None
+    density: Number = 0.0
+    expansion: Number | Three = 0.0
+
+
+class OrthotropicTable(LocalTable):
+    kind: Literal["orthotropic"]
+    young: Three
+    poisson: Three
+    shear: Three
+
+
+class AnisotropicTable(LocalTable):
+    kind: Literal["anisotropic"]
+    constants: Annotated[list[Number], Field(min_length=21, max_length=21)]
+
+
+class OverTemperatureTable(Table):
+    kind: Literal["over-temperature"]
+    temperatures: Annotated[list[Number], Field(min_length=1)]
+    materials: Annotated[list[str], Field(min_length=1)]
+    initial_temperature: Number = 0.0
+    zero: Number | None = None
 
 
 class HenckyTable(Table):
@@ -87,4 +126,13 @@ class ArrudaBoyceTable(RubberTable):
 
 
 Rubber = MooneyRivlinTable | YeohTable | OgdenTable | ArrudaBoyceTable
-Materials = MaterialTable | NeoHookeTable | HenckyTable | PlasticTable | Rubber
+Materials = (
+    MaterialTable
+    | OrthotropicTable
+    | AnisotropicTable
+    | OverTemperatureTable
+    | NeoHookeTable
+    | HenckyTable
+    | PlasticTable
+    | Rubber
+)

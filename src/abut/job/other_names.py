@@ -19,13 +19,15 @@ KEYS: Mapping[str, str] = {
 }  # fmt: skip
 YIELDS = "plastic is what it is called"
 RUBBER = "of the laws for rubber there are neo-hooke, mooney-rivlin, yeoh, ogden and arruda-boyce"
+ORTHOTROPIC = "orthotropic is what it is called"
 KINDS: Mapping[str, str] = {
     "elastic-plastic": YIELDS, "elastoplastic": YIELDS, "j2": YIELDS, "von-mises": YIELDS, "vmis": YIELDS, "mises": YIELDS,
     "vmis-isot-line": YIELDS, "vmis-isot-trac": YIELDS, "vmis-cine-line": YIELDS, "chaboche": YIELDS,
     "logarithmic": "hencky is what it is called", "elas-hyper-log": "hencky is what it is called",
     "hyperelastic": RUBBER, "mooney": RUBBER, "polynomial": RUBBER, "rubber": RUBBER, "signorini": RUBBER, "gent": RUBBER,
     "viscoelastic": "there are no materials that creep or relax",
-    "orthotropic": "materials are the same in all directions", "anisotropic": "materials are the same in all directions",
+    "ortho": ORTHOTROPIC, "engineering-constants": ORTHOTROPIC, "lamina": ORTHOTROPIC, "transversely-isotropic": ORTHOTROPIC,
+    "elas-orth": ORTHOTROPIC, "elas-istr": ORTHOTROPIC, "aniso": "anisotropic is what it is called",
     "elastic": "linear-elastic is what it is called", "isotropic": "linear-elastic is what it is called",
 }  # fmt: skip
 

@@ -11,9 +11,8 @@ from abut.bodies.integration import INTEGRATIONS
 from abut.errors import InputError
 from abut.fields import number_or_field
 from abut.job.key_descriptions import describe
-from abut.job.material_tables import Materials
+from abut.job.material_tables import AxesTable, Materials
 from abut.job.table import Number, OneOf, Table
-from abut.model.axes import KINDS as AXES
 from abut.model.contact import GEOMETRIES, KINDS, LAWS, METHODS, PRESSURES, RULES, Contact, Integration
 from abut.model.coupling import KINDS as COUPLINGS
 from abut.model.coupling import Coupling
@@ -86,16 +85,6 @@ class SolidTable(Table):
     material: str
     temperature: Number = 0.0
     integration: Annotated[str, OneOf(INTEGRATIONS)] = INTEGRATIONS[0]
-
-
-class AxesTable(Table):
-    """local axes at each point"""
-
-    kind: Annotated[str, OneOf(AXES)] = AXES[0]
-    origin: list[Number] | None = None
-    axis: list[Number] | None = None
-    x: list[Number] | None = None
-    xy: list[Number] | None = None
 
 
 class SupportTable(Table):

@@ -8,7 +8,7 @@ finds the strains out of the plane (``abut.materials.plane_stress``). Stress and
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -32,8 +32,8 @@ class Material(Protocol):
         ...
 
     @property
-    def expansion(self) -> float:
-        """Thermal expansion per degree, alike in all directions."""
+    def expansion(self) -> float | Sequence[float]:
+        """Thermal expansion per degree, alike in all directions; of a ``places.LocalMaterial`` its own matter."""
         ...
 
     @property
@@ -82,6 +82,10 @@ class OwnMaterial:
         """What integrates it in the compiled core; None: it is evaluated in Python."""
         return None
 
+    def check(self, dim: int, plane: str | None, where: str) -> None:
+        """Raise InputError, beginning with ``where``, for a model of ``dim`` dimensions and a plane assumption (as of
+        ``Model``) that it cannot be in."""
+
 
 @runtime_checkable
 class FiniteMaterial(Protocol):
@@ -97,6 +101,13 @@ def compiled(material: Material, finite: bool) -> Compiled | None:
     """As ``OwnMaterial.compiled``, None of materials that do not say."""
     said = getattr(material, "compiled", None)
     return None if said is None else said(finite)
+
+
+def check_model(material: Material, dim: int, plane: str | None, where: str) -> None:
+    """As ``OwnMaterial.check``."""
+    check = getattr(material, "check", None)
+    if check is not None:
+        check(dim, plane, where)
 
 
 def is_small(material: Material) -> bool:

@@ -1,6 +1,6 @@
 """What the user states, as frozen records that check themselves and each other."""
 
-from abut.model.axes import Axes
+from abut.axes import Axes
 from abut.model.body_forces import BodyForce, Centrifugal, Gravity, Load
 from abut.model.conditions import Amplitude, Equation, History, Rigid, Support, Term
 from abut.model.contact import LAWS, METHODS, PRESSURES, RULES, Contact, Integration

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut import checks
+from abut.axes import Axes
 from abut.errors import InputError
 from abut.fields import Field, number_or_field
-from abut.model.axes import Axes
 from abut.types import Json
 
 COMPONENTS = ("x", "y", "z")

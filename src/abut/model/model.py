@@ -27,7 +27,7 @@ from abut.contact.sides import (
 )
 from abut.dofs import Dofs
 from abut.errors import InputError
-from abut.materials.material import Material
+from abut.materials.material import Material, check_model
 from abut.mesh.check import check_entries
 from abut.mesh.mesh import Mesh
 from abut.model.body_forces import Load
@@ -356,6 +356,7 @@ class Model:
                 raise InputError(f"solids[{i}].body: body '{solid.body}' has two materials; keep one of them")
             seen.add(solid.body)
             check_integration(solid.integration, self._kinds(solid.body), self.plane, f"solids[{i}].integration")
+            check_model(solid.material, self.dim, self.plane, f"solids[{i}].material")
             check_incompressible(self.integration(solid), solid.material, self.plane, f"solids[{i}].integration")
         for i, rigid in enumerate(self.rigid):
             if rigid.body in seen:

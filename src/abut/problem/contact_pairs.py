@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.bodies.mirror import mirrors
 from abut.cells import CELLS
 from abut.contact.coupling import Couple, Coupling, couple, default_reach
 from abut.contact.geometry import beside_others, facet_sizes, full_moments
@@ -23,7 +24,6 @@ from abut.contact.shared_points import Functions, functions, one_each
 from abut.contact.sides import Sides
 from abut.contact.symmetry_planes import Planes, planes
 from abut.contact.tangential import SlipOperators, slip_operators
-from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
 from abut.model import METHODS, Contact, Model
 from abut.model.friction import friction_values
@@ -123,7 +123,7 @@ def pair(
         components=(space,), compliance=both.compliance, carried=held(space, contactor, constraints),
         points=None if contact.frictional else _points(coupling, space, constraints, both.young / sizes, constant, varying),
         interior=_interior(contactor, coupling, border, beyond) if space.name == DUAL_P1 else None,
-        planes=planes_of(model.mesh, contactor, sides_end, goes_on(contactor, sides_end, target, reach), constraints),
+        planes=planes_of(model, contactor, sides_end, goes_on(contactor, sides_end, target, reach), constraints),
     )  # fmt: skip
     if not contact.frictional:
         return own_pair
@@ -169,7 +169,7 @@ def _interior(contactor: Surface, coupling: Coupling, border: Rim, beyond: NDArr
 
 
 def planes_of(
-    mesh: Mesh, contactor: Surface, border: Rim, beyond: NDArray[np.bool_], constraints: Constraints
+    model: Model, contactor: Surface, border: Rim, beyond: NDArray[np.bool_], constraints: Constraints
 ) -> Planes:
     """Where a contactor's smooth sides end at planes of symmetry: supports hold what is square to their rim, where it is,
     but not their normal, and the target ends there too. A body's whole outside goes on there, round an edge. border: of the
@@ -181,6 +181,9 @@ def planes_of(
         mirrored &= constraints.held_share(end, border.normal) < HELD
         moved = constraints.prescribed.reshape(-1, contactor.dim, constraints.prescribed.shape[1])[end]
         mirrored &= np.abs(np.einsum("md,mdh->mh", out, moved)).max(axis=1, initial=0.0) <= STILL * constraints.largest
+    mesh, at = model.mesh, np.flatnonzero(mirrored)
+    cells = contactor.cells[border.facet[at]]
+    mirrored[at] = mirrors(model.deformable, cells, mesh.points[border.ends[at, 0]], out[at])
     corners = np.concatenate([np.full(len(block.nodes), CELLS[block.kind].corners) for block in mesh.blocks])
     uneven = corners[contactor.cells] == 3 if contactor.dim == 2 else np.isin(contactor.kinds, TRIANGLES)
     return planes(contactor, border, mirrored, uneven)

@@ -11,14 +11,18 @@ import numpy as np
 from abut.errors import nearest
 from abut.io.deck.cards import Card, Line, as_float, as_integer, key, of
 from abut.io.deck.contact_cards import sides
+from abut.io.deck.elastic_cards import elastic, expansion, orientation
 from abut.io.deck.mesh_cards import MeshCards
 from abut.io.deck.plastic_cards import hardening
 from abut.io.deck.reasons import Reasons
 from abut.io.deck.record import (
     CyclicSymmetry,
+    Elastic,
     Equation,
+    Expansion,
     Material,
     Numbers,
+    Orientation,
     PreTension,
     RigidBody,
     Section,
@@ -27,13 +31,15 @@ from abut.io.deck.record import (
 from abut.io.deck.rubber_cards import rubber
 
 EMPTY = np.empty(0, np.int64)
+NO_CONSTANTS = Elastic("isotropic", ((0.0, (0.0, 0.0)),))
+SEVERAL = "values that depend on temperature (several rows) are not supported here; give one row, that which matters"
 
 
 PROPERTIES = ("ELASTIC", "HYPERELASTIC", "PLASTIC", "CYCLICHARDENING", "DENSITY", "EXPANSION")  # of a material
 
 
 def materials(cards: Sequence[Card], reasons: Reasons) -> dict[str, Material]:
-    """Materials by name in capitals; ``reasons`` gets what is not isotropic with one row of numbers."""
+    """Materials by name in capitals; ``reasons`` gets what abut does not know."""
     result: dict[str, Material] = {}
     for i, card in enumerate(cards):
         if card.key == "MATERIAL":
@@ -54,30 +60,39 @@ def _material(card: Card, following: Sequence[Card]) -> Material:
     if law is not None and "PLASTIC" in options:
         raise options["PLASTIC"].error(f"material '{name}' has *HYPERELASTIC as well; give one of them")
     if law is not None:
-        constants = 0.0, 0.0
+        constants = NO_CONSTANTS
     elif "ELASTIC" in options:
-        elastic = _row(options["ELASTIC"], "Young's modulus and Poisson's ratio")
-        constants = elastic.number(0, "Young's modulus"), elastic.number(1, "Poisson's ratio", 0.0)
+        constants = elastic(options["ELASTIC"])
     else:
         raise card.error(f"material '{name}' has no *ELASTIC; give Young's modulus and Poisson's ratio")
-    density = _row(options["DENSITY"], "density").number(0, "density") if "DENSITY" in options else 0.0
-    expansion = 0.0
-    if "EXPANSION" in options:
-        expansion = _row(options["EXPANSION"], "thermal expansion").number(0, "thermal expansion")
-    return Material(name, constants, density, expansion, card.place, law, hardening(options))
+    density = _density(options["DENSITY"]) if "DENSITY" in options else 0.0
+    swelling = expansion(options["EXPANSION"]) if "EXPANSION" in options else Expansion()
+    metal = hardening(options)
+    if law is not None or metal is not None:
+        _check_plain(options, constants, swelling)
+    return Material(name, constants, density, swelling, card.place, law, metal)
 
 
-def _row(card: Card, what: str) -> Line:
-    kind = key(card.get("TYPE", "ISO") or "")
-    if kind not in ("ISO", "ISOTROPIC"):
-        raise card.error(f"TYPE={kind} is not supported; abut's solids are isotropic")
-    line = card.first(what)
-    if len(card.lines) > 1:
-        raise card.lines[1].error(
-            "values that depend on temperature (several rows) are not supported; give one row, that of the temperature "
-            "that matters"
+def _check_plain(options: Mapping[str, Card], constants: Elastic, swelling: Expansion) -> None:
+    """Raise for what metal that yields and rubber cannot have."""
+    for name, rows in (("ELASTIC", constants.rows), ("EXPANSION", swelling.rows)):
+        if len(rows) > 1:
+            raise options[name].lines[1].error(SEVERAL)
+    if constants.kind != "isotropic":
+        raise options["ELASTIC"].error("metal that yields is isotropic here; give TYPE=ISO")
+    if len(swelling.rows[0][1]) > 1:
+        raise options["EXPANSION"].error(
+            "metal that yields and rubber expand alike in all directions here; give TYPE=ISO"
         )
-    return line
+
+
+def _density(card: Card) -> float:
+    """The same at every temperature."""
+    result = card.first("density").number(0, "density")
+    for line in card.lines[1:]:
+        if line.number(0, "density") != result:
+            raise line.error(SEVERAL)
+    return result
 
 
 def sections(
@@ -86,15 +101,16 @@ def sections(
     """Solid sections, without materials where ``known`` is None; later ones override earlier ones for elements that stand
     in both, as in Abaqus and CalculiX."""
     result: list[Section] = []
+    axes = {name.upper(): card for card in of(cards, "ORIENTATION") if (name := card.get("NAME"))}
     for card in of(cards, "SOLID SECTION"):
         with reasons.gathered():
-            section = _section(card, mesh, known)
+            section = _section(card, mesh, known, axes)
             result = [replace(s, elements=np.setdiff1d(s.elements, section.elements)) for s in result]
             result.append(section)
     return tuple(s for s in result if len(s.elements))
 
 
-def _section(card: Card, mesh: MeshCards, known: Mapping[str, Material] | None) -> Section:
+def _section(card: Card, mesh: MeshCards, known: Mapping[str, Material] | None, axes: Mapping[str, Card]) -> Section:
     name, material = card.need("ELSET"), card.need("MATERIAL")
     if name.upper() not in mesh.element_sets.sets:
         raise card.unknown(f"no element set named {name!r}{mesh.element_sets.like(name)}")
@@ -106,8 +122,20 @@ def _section(card: Card, mesh: MeshCards, known: Mapping[str, Material] | None) 
     if not thickness > 0.0:
         raise card.lines[0].error(f"thickness: expected a number > 0, got {thickness:g}")
     elements, spelled = mesh.element_sets.sets[name.upper()], mesh.element_sets.spelled[name.upper()]
-    properties = known[material.upper()] if known is not None else Material(material, (1.0, 0.0), 0.0, 0.0, card.place)
-    return Section(spelled, elements, properties, thickness, card.place)
+    properties = (
+        known[material.upper()] if known is not None else Material(material, NO_CONSTANTS, 0.0, Expansion(), card.place)
+    )
+    return Section(spelled, elements, properties, thickness, card.place, _axes(card, properties, axes))
+
+
+def _axes(card: Card, material: Material, known: Mapping[str, Card]) -> Orientation | None:
+    """Of a section, where its material has directions."""
+    name = card.get("ORIENTATION")
+    if name is None or not material.directed:
+        return None
+    if name.upper() not in known:
+        raise card.unknown(f"no orientation named {name!r}{nearest(name.upper(), known)}")
+    return orientation(known[name.upper()])
 
 
 def equations(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[Equation, ...]:

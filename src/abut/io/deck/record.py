@@ -57,28 +57,65 @@ class Rubber:
     volume: tuple[float, ...]
 
 
+Rows = tuple[tuple[float, tuple[float, ...]], ...]  # temperatures, growing, and what belongs to them
+
+
+@dataclass(frozen=True)
+class Elastic:
+    """kind: "isotropic" (Young's modulus, Poisson's ratio), "engineering" (E1 E2 E3, nu12 nu13 nu23, G12 G13 G23) or
+    "anisotropic" (21 entries of the stiffness); rows of these."""
+
+    kind: str
+    rows: Rows
+
+
+@dataclass(frozen=True)
+class Expansion:
+    """rows: of one number, or three along the local directions; zero: the temperature from which they count."""
+
+    rows: Rows = ((0.0, (0.0,)),)
+    zero: float = 0.0
+
+
+@dataclass(frozen=True)
+class Orientation:
+    """Local axes of a section: kind "rectangular" (a, b: vectors along x and near y) or "cylindrical" (points of the
+    axis)."""
+
+    kind: str
+    a: tuple[float, float, float]
+    b: tuple[float, float, float]
+    place: Place
+
+
 @dataclass(frozen=True)
 class Material:
-    """constants: Young's modulus and Poisson's ratio, of others than rubber."""
+    """elastic: of others than rubber."""
 
     name: str
-    constants: tuple[float, float]
+    elastic: Elastic
     density: float
-    expansion: float
+    expansion: Expansion
     place: Place
     rubber: Rubber | None = None
     hardening: Hardening | None = None
 
+    @property
+    def directed(self) -> bool:
+        """Whether it matters how its axes lie."""
+        return self.elastic.kind != "isotropic" or len(self.expansion.rows[0][1]) > 1
+
 
 @dataclass(frozen=True)
 class Section:
-    """name: the element set; thickness: of plane elements."""
+    """name: the element set; thickness: of plane elements; orientation: None for the global axes."""
 
     name: str
     elements: Numbers
     material: Material
     thickness: float
     place: Place
+    orientation: Orientation | None = None
 
 
 @dataclass(frozen=True)
