@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +30,7 @@ from abut.errors import InputError
 from abut.materials.material import Material
 from abut.mesh.check import check_entries
 from abut.mesh.mesh import Mesh
+from abut.mesh.record import MeshRecord
 from abut.model.body_forces import Load
 from abut.model.conditions import COMPONENTS, Equation, History, Rigid, Support
 from abut.model.consistency import check_equations, check_filled, check_loads, check_rigid, check_supports
@@ -46,6 +48,11 @@ from abut.model.step_ends import with_corners
 from abut.model.symmetry import held_directions
 
 PLANES = ("strain", "stress", "axisymmetric")
+RECORDS: dict[str, tuple[type, ...]] = {  # what the lists of a model are of
+    "solids": (Solid,), "supports": (Support,), "loads": get_args(Load), "contacts": (Contact,), "equations": (Equation,),
+    "rigid": (Rigid,), "probes": (Probe,), "rotations": (Rotation,), "couplings": (Coupling,), "preloads": (Preload,),
+    "springs": (Spring,),
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -132,20 +139,10 @@ class Model:
     springs: Sequence[Spring] = ()
 
     def __post_init__(self) -> None:
-        for name in (
-            "solids",
-            "supports",
-            "loads",
-            "contacts",
-            "equations",
-            "rigid",
-            "probes",
-            "rotations",
-            "couplings",
-            "preloads",
-            "springs",
-        ):
-            object.__setattr__(self, name, checks.listed(getattr(self, name), name))
+        checks.instance(self.mesh, MeshRecord, "model: mesh", "a mesh (abut.Mesh)")
+        checks.instance(self.solve, SolveOptions, "model: solve", "options (abut.SolveOptions)")
+        for name, kinds in RECORDS.items():
+            object.__setattr__(self, name, checks.records(getattr(self, name), name, kinds))
         check_entries(self.mesh)
         check_filled(self.mesh, self._named())
         self._check_plane()

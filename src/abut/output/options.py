@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -58,7 +58,7 @@ class Output:
         if isinstance(self.steps, str):
             checks.choice(self.steps, "output.steps", STEPS)
         else:
-            numbers = [self.steps] if isinstance(self.steps, int) else list(self.steps)
+            numbers = list(self.steps) if isinstance(self.steps, Iterable) else [self.steps]
             if not numbers or any(isinstance(n, bool) or not isinstance(n, int) or n < 1 for n in numbers):
                 raise InputError(
                     f'output.steps: expected "all", "last", a number > 0 or a list of such, got {self.steps!r}; 10 means '
@@ -66,6 +66,7 @@ class Output:
                 )
         if isinstance(self.fields, str):
             raise InputError(f"output.fields: expected a list of names, got {self.fields!r}; write [{self.fields!r}]")
+        checks.listed(self.fields, "output.fields", "names")
         for name in self.fields:
             checks.choice(name, "output.fields", FIELDS)
 
