@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from pathlib import Path
+from typing import Any, TypeVar
 
 import numpy as np
 
 from abut.errors import InputError, nearest
 from abut.types import Array
 
+Kind = TypeVar("Kind")
 LARGEST = 1e60  # size of a number that no units need; products of several stay within what a computer can hold
 
 
@@ -104,12 +107,59 @@ def _shaped(result: Array, name: str, shape: Sequence[int | None]) -> Array:
 
 def known(name: object, known: Iterable[str] | Mapping[str, object], where: str, what: str) -> None:
     """Raise InputError for a name that is not among the known ones, with the nearest."""
-    if name not in known:
+    if not isinstance(name, str) or name not in known:
         raise InputError(f"{where}: no {what} named {name!r} in the mesh{nearest(str(name), known)}")
 
 
-def listed(values: object, where: str) -> tuple[Any, ...]:
-    """A list of records as a tuple. Raises InputError for one record alone, a mapping, or text."""
+def listed(values: object, where: str, what: str = "records") -> tuple[Any, ...]:
+    """A list as a tuple. Raises InputError for one entry alone, a mapping, or text. what: the entries, in a word."""
     if not isinstance(values, Iterable) or isinstance(values, (str, bytes, Mapping)):
-        raise InputError(f"{where}: expected a list of records, in brackets [...], got {type(values).__name__}")
+        raise InputError(f"{where}: expected a list of {what}, in brackets [...], got {type(values).__name__}")
     return tuple(values)
+
+
+def records(values: object, where: str, kinds: tuple[type, ...]) -> tuple[Any, ...]:
+    """A list of records of some ``kinds`` as a tuple. Raises InputError for anything else, with its place."""
+    result = listed(values, where)
+    for i, value in enumerate(result):
+        if not isinstance(value, kinds):
+            raise InputError(
+                f"{where}[{i}]: expected {' or '.join(k.__name__ for k in kinds)}, got {type(value).__name__}"
+            )
+    return result
+
+
+def function(value: object, where: str) -> Any:
+    """Return ``value``; raise InputError unless it can be called."""
+    if not callable(value):
+        raise InputError(f"{where}: expected a function, got {type(value).__name__}")
+    return value
+
+
+def mapping(values: object, where: str, what: str) -> Mapping[str, Any]:
+    """Return ``values``; raise InputError unless it is a mapping of names. what: that names have, in words."""
+    if not isinstance(values, Mapping) or not all(isinstance(name, str) for name in values):
+        got = "names that are no text" if isinstance(values, Mapping) else type(values).__name__
+        raise InputError(f"{where}: expected {what} by name, as {{name: ...}}, got {got}")
+    return values
+
+
+def instance(value: object, kind: type[Kind], where: str, what: str) -> Kind:
+    """Return ``value``; raise InputError unless it is a ``kind``. what: its name in a sentence, "a model (abut.Model)"."""
+    if not isinstance(value, kind):
+        raise InputError(f"{where}: expected {what}, got {type(value).__name__}")
+    return value
+
+
+def text(value: object, where: str) -> str:
+    """Return ``value``; raise InputError unless it is a text that is not empty."""
+    if not isinstance(value, str) or not value:
+        raise InputError(f"{where}: expected a text that is not empty, got {value!r}")
+    return value
+
+
+def path(value: object, where: str) -> Path:
+    """Return a path; raise InputError for what is none, and for an empty text, which would mean the working directory."""
+    if not isinstance(value, (str, os.PathLike)) or not isinstance(os.fspath(value), str) or not os.fspath(value):
+        raise InputError(f"{where}: expected a path, as text or pathlib.Path, got {value!r}")
+    return Path(value)

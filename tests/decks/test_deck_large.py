@@ -126,11 +126,25 @@ def test_kinds_of_rubber(tmp_path: Path, card: str, material: object) -> None:
 
 
 def test_notes_say_what_is_otherwise(tmp_path: Path) -> None:
-    notes = load(tmp_path, DECK + step(card="*STATIC").replace("*STEP", "*STEP, NLGEOM")).notes
-    assert any("NLGEOM holds for the whole deck, though *STEP 1 is without it" in note for note in notes)
     notes = load(tmp_path, LARGE.replace("*STATIC", "*STATIC, DIRECT\n0.5, 1.")).notes
     assert any("DIRECT: an increment that does not converge is halved" in note for note in notes)
     assert not any("automatic increments" in note for note in notes)
+
+
+@pytest.mark.parametrize(("first", "second"), [("", ", NLGEOM"), (", NLGEOM", ", NLGEOM=NO")])
+def test_steps_that_are_not_alike(first: str, second: str, tmp_path: Path) -> None:
+    """CalculiX solves the one step with small displacements, the other with large ones."""
+    text = DECK.replace("*STEP", f"*STEP{first}") + step(card="*STATIC").replace("*STEP", f"*STEP{second}")
+    with pytest.raises(InputError, match=r"write \*STEP, NLGEOM in step \d too.* to solve without it: --ignore NLGEOM"):
+        load(tmp_path, text)
+    assert load(tmp_path, text, "NLGEOM").model.kinematics == "small"
+
+
+def test_nlgeom_holds_until_it_is_revoked(tmp_path: Path) -> None:
+    """CalculiX 2.20 gives the same digits with and without it in the second step."""
+    job = load(tmp_path, LARGE + step(card="*STATIC"))
+    assert job.model.kinematics == "finite"
+    assert not any("NLGEOM holds" in note for note in job.notes)
 
 
 def test_rubber(tmp_path: Path) -> None:

@@ -94,25 +94,6 @@ def test_temperature(tmp_path):
     assert pressures == pytest.approx([E * 1e-3 * 30.0, 0.0], abs=1e-9)
 
 
-@pytest.mark.parametrize(("zone", "size"), [(0.0, 0.004), (0.001, 0.004), (0.01, 0.01)])
-def test_adjust_takes_every_overlap_and_gaps_of_its_zone_only(zone, size, tmp_path):
-    """Node 11 overlaps by 0.004, node 13 is 0.02 away: with a zone of 0.01 its gap stays."""
-    text = CONTACT.replace("11, 0,0,1", "11, 0,0,0.996").replace("13, 1,1,1", "13, 1,1,1.02")
-    text = text.replace("INTERACTION=I,", f"INTERACTION=I, ADJUST={zone},")
-    job = load(tmp_path, text + step("*BOUNDARY", "TOP, 3, 3, 0."))
-    assert job.model.contacts[0].adjust == pytest.approx(size, rel=1e-8)
-    assert any("overlap the master by up to 0.004" in note for note in job.notes) == (zone < 0.004)
-    assert not any("so do gaps" in note for note in job.notes)
-
-
-def test_gaps_that_an_overlap_takes_with_it_are_noted(tmp_path):
-    """A gap of 0.003 beside an overlap of 0.004."""
-    text = CONTACT.replace("11, 0,0,1", "11, 0,0,0.996").replace("13, 1,1,1", "13, 1,1,1.003")
-    text = text.replace("INTERACTION=I,", "INTERACTION=I, ADJUST=0.,")
-    notes = load(tmp_path, text + step("*BOUNDARY", "TOP, 3, 3, 0.")).notes
-    assert any("and so do gaps of up to as much, at 1 nodes" in note for note in notes)
-
-
 def test_clearance_and_adjustment(tmp_path):
     """ADJUST removes an overlap of 0.004, however small its zone, as in CalculiX 2.20; CLEARANCE takes every gap's place."""
     text = CONTACT.replace("0,1", "0,0.996").replace("18, 0,1,2", "18, 0,1,2")

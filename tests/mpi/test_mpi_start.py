@@ -64,3 +64,12 @@ def test_options_reach_petsc_and_slips_are_named(mpirun: Run, tmp_path: Path) ->
     assert "PETSc did not use -ksp_tpye: misspelt" in result.stderr
     notes = json.loads((tmp_path / "results" / "summary.json").read_text())["notes"]
     assert [note for note in notes if "did not use" in note] == [result.stderr.strip().removeprefix("abut: ")]
+
+
+@pytest.mark.parametrize("option", ["-pc_type", "-ksp_type", "-stiffness_pc_type"])
+def test_an_unknown_solver_one_message(mpirun: Run, option: str, tmp_path: Path) -> None:
+    """PETSc looks for it on all processes at once, in the middle of the run: it is asked before."""
+    result = mpirun(2, "run", "--quiet", job(tmp_path, steps=1), option, "gmag")
+    assert result.returncode == 2
+    assert result.stderr.count(f"abut: error: {option} gmag: this PETSc has no ") == 1
+    assert "Traceback" not in result.stderr

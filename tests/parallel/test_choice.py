@@ -22,6 +22,7 @@ def problem(friction: float, law: str) -> ContactProblem:
 def all_is_large(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without any options of PETSc."""
     monkeypatch.setattr(linear, "LARGE_ON_MANY", dict.fromkeys(linear.LARGE_ON_MANY, 1))
+    monkeypatch.setattr(linear, "require_known", lambda: None)
     monkeypatch.setattr(linear, "wants_factors", lambda: False)
     monkeypatch.setattr(linear, "wants_iterations", lambda: False)
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from abut import checks
 from abut.analysis.run import Run
-from abut.errors import InputError, OutOfTime
+from abut.errors import OutOfTime
 from abut.model import Model
 from abut.nonlinear.settings import DEFAULT, Settings
 from abut.solution import Observer, OnStep, Saved, Solution
@@ -86,8 +87,12 @@ def solve(
     >>> all(check.passed for check in solution.certificate)
     True
     """
-    if not isinstance(model, Model):
-        raise InputError(f"solve: expected a model (abut.Model), got {type(model).__name__}")
+    checks.instance(model, Model, "solve", "a model (abut.Model)")
+    for name, function in (("observer", observer), ("on_step", on_step)):
+        if function is not None:
+            checks.function(function, f"solve: {name}")
+    checks.records(resume, "solve: resume", (Saved,))
+    checks.instance(settings, Settings, "solve: settings", "settings (abut.nonlinear.settings.Settings)")
     run = Run.of(model, observer or _silent, on_step or _silent, team, resume, settings)
     first = run.restore(resume)
     try:

@@ -6,7 +6,6 @@ from typing import TypedDict
 
 import numpy as np
 
-from abut.io.deck.adjust import distance
 from abut.io.deck.faces import nodes_of_rows
 from abut.io.deck.groups import Groups
 from abut.io.deck.record import Deck, Pair
@@ -50,41 +49,14 @@ def gap_options(deck: Deck, groups: Groups, pair: Pair, notes: list[str]) -> Gap
     return {"offset": offset, "amplitude": Amplitude(RISE if unit is None else unit)}
 
 
-def adjusted(deck: Deck, groups: Groups, pair: Pair, notes: list[str]) -> float:
-    """Up to which size gaps and overlaps of a contact pair count as none: ADJUST, which takes away every overlap, however
-    deep; with *CLEARANCE all of them. ``notes`` gets what that is."""
-    extent = float(np.ptp(deck.points, axis=0).max())
-    if pair.clearance is not None:
-        return extent
-    if pair.adjust is None:
-        return 0.0
-    if isinstance(pair.adjust, np.ndarray):
-        size = distance(deck, groups, pair, pair.adjust)
-        notes.append(f"contact '{pair.name}': ADJUST with a node set became a distance, {size:.4g}")
-        return size
-    zone = float(pair.adjust)
-    nodes = nodes_of_rows(deck, groups.rows(pair.slave))
-    apart = heights(deck, groups.rows(pair.master), np.unique(nodes[nodes >= 0]))
-    depth = float(-apart.min(initial=0.0))
-    if depth <= zone + ROUND * extent:
-        return zone
-    size = depth * (1.0 + ROUND)
-    open_too = int(((apart > zone) & (apart <= size)).sum())
-    closed = f", and so do gaps of up to as much, at {open_too} nodes, which ADJUST would leave" if open_too else ""
-    notes.append(
-        f"contact '{pair.name}': ADJUST: nodes of the slave overlap the master by up to {depth:.4g}; overlaps count as "
-        f"none, as in CalculiX and Abaqus{closed}"
-    )
-    return size
-
-
-def bilateral_note(deck: Deck, groups: Groups, pair: Pair, adjust: float) -> str:
-    """What NO SEPARATION has become; adjust: up to which gaps count as none, a length."""
+def bilateral_note(deck: Deck, groups: Groups, pair: Pair) -> str:
+    """What NO SEPARATION has become."""
+    zone = pair.adjust if isinstance(pair.adjust, float) else 0.0
     nodes = nodes_of_rows(deck, groups.rows(pair.slave))
     apart = float(heights(deck, groups.rows(pair.master), np.unique(nodes[nodes >= 0])).max(initial=0.0))
     closed = (
         f"; gaps of up to {apart:.3g} are closed, which may stay open there"
-        if apart > max(adjust, ROUND * float(np.ptp(deck.points, axis=0).max()))
+        if apart > max(zone, ROUND * float(np.ptp(deck.points, axis=0).max()))
         else ""
     )
     return f"contact '{pair.name}': NO SEPARATION: bilateral from the beginning on{closed}"

@@ -32,10 +32,6 @@ def finite_notes(deck: Deck) -> list[str]:
         notes.append("*STATIC, STABILIZE: " + (DRAG if is_finite(deck) else NO_DRAG))
     if not is_finite(deck):
         return notes
-    small = [step for step in deck.steps if not step.finite]
-    if small:
-        numbers = ", ".join(str(step.number) for step in small)
-        notes.append(f"NLGEOM holds for the whole deck, though *STEP {numbers} is without it ({small[0].place})")
     if any(value.kind == "centrifugal" for step in deck.steps for value in step.values):
         notes.append(
             "NLGEOM: CENTRIF with distances from the axis of the undeformed bodies; CalculiX takes those of deformed ones"
@@ -55,6 +51,15 @@ def finite_notes(deck: Deck) -> list[str]:
 def unsupported(deck: Deck) -> Iterator[DeckError]:
     """What a deck asks for that does not go with its kinematics."""
     finite = is_finite(deck)
+    small = next((step for step in deck.steps if not step.finite), None)
+    if finite and small is not None:
+        large = next(step for step in deck.steps if step.finite)
+        yield DeckError(
+            small.place,
+            f"*STEP {small.number} has small displacements, and *STEP {large.number} NLGEOM: abut takes all steps of a deck "
+            f"alike; write *STEP, NLGEOM in step {small.number} too, where displacements then are large as well",
+            "NLGEOM",
+        )
     for material in {section.material.name: section.material for section in deck.sections}.values():
         if material.rubber and not finite:
             yield DeckError(

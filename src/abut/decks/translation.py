@@ -11,8 +11,9 @@ import numpy as np
 from abut.bodies.loads import stress_load, surface_area
 from abut.contact.overclosure import PressureOverclosure
 from abut.contact.sides import bodies_of, find_sides
+from abut.decks.adjusting import adjusted
 from abut.decks.body_loads import body_loads
-from abut.decks.clearance import adjusted, bilateral_note, gap_options
+from abut.decks.clearance import bilateral_note, gap_options
 from abut.decks.couplings import couplings, reference_loads, reference_nodes, unlisted_notes
 from abut.decks.elastic import elastic_law
 from abut.decks.friction import friction_options, path_notes
@@ -121,6 +122,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
         notes.append(f"cards without effect on the result: {', '.join(deck.quiet)}")
     mesh = build(Mesh, groups.raw(), deck.path)
     notes += mesh.notes
+    mesh, contacts = adjusted(mesh, deck, groups, contacts, notes)
     check_mesh(mesh)
     for contact, pair in zip(contacts, deck.pairs):
         with reasons.gathered():
@@ -253,10 +255,10 @@ def _contact(deck: Deck, groups: Groups, pair: Pair, hard: Numbers, notes: list[
             slave, master = master, slave
             notes.append(f"contact '{pair.name}': the master is the contactor, as the slave is rigid")
         return Contact(contactor=slave, target=master, name=pair.name, kind="tied")
-    adjust = adjusted(deck, groups, pair, notes)
+    adjust = float(np.ptp(deck.points, axis=0).max()) if pair.clearance is not None else 0.0  # every gap
     gap = gap_options(deck, groups, pair, notes)
     if pair.bilateral:
-        notes.append(bilateral_note(deck, groups, pair, adjust))
+        notes.append(bilateral_note(deck, groups, pair))
         return Contact(slave, master, name=pair.name, kind="bilateral", adjust=adjust, **gap)
     rub = friction_options(deck, pair.friction)
     return Contact(slave, master, name=pair.name, adjust=adjust, **gap, **rub)

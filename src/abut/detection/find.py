@@ -114,12 +114,16 @@ def find_contacts(
     >>> mesh = abut.add_surfaces(mesh, [found])
     >>> contacts = [found.contact()]  # of a Model of this mesh
     """
+    checks.instance(mesh, Mesh, "find_contacts", "a mesh (abut.Mesh)")
+    checks.listed(solids, "find_contacts: solids")
     if reach is not None:
         checks.positive(reach, "reach")
-    for name in bodies or ():
+    for name in () if bodies is None else checks.listed(bodies, "find_contacts: bodies", "names"):
         if name not in mesh.bodies:
             raise InputError(f"bodies: no body named {name!r} in the mesh{nearest(name, mesh.bodies)}")
     names = [name for name in mesh.bodies if bodies is None or name in bodies]
+    if not names:
+        return ()
     every = outside(mesh, names)
     patches = _patches(every, facing(every, reach))
     materials = {solid.body: solid.material for solid in solids} or None
@@ -164,8 +168,10 @@ def add_surfaces(mesh: Mesh, found: Sequence[FoundContact]) -> Mesh:
     InputError
         Where it has such names already.
     """
+    checks.instance(mesh, Mesh, "add_surfaces", "a mesh (abut.Mesh)")
     surfaces = dict(mesh.surfaces)
-    for contact in found:
+    for contact in checks.listed(found, "add_surfaces: found", "found contacts"):
+        checks.instance(contact, FoundContact, "add_surfaces: found", "what find_contacts returns (abut.FoundContact)")
         for name, rows in ((contact.contactor, contact.contactor_facets), (contact.target, contact.target_facets)):
             if name in surfaces:
                 raise InputError(

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from abut import checks
 from abut.diagnosis.constraints import constraints
 from abut.diagnosis.contactor import sides
 from abut.diagnosis.cost import cost
@@ -45,8 +46,7 @@ def check(model: Model) -> Report:
     InputError
         What is no model.
     """
-    if not isinstance(model, Model):
-        raise InputError(f"check: expected a model (abut.Model), got {type(model).__name__}")
+    checks.instance(model, Model, "check", "a model (abut.Model)")
     findings, doubts = [*quality(model.mesh), *probes(model), *too_stiff(model)], units(model)
     shown: list[Motion] = []
     try:

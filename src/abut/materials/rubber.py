@@ -207,7 +207,7 @@ class Ogden(Rubber):
 
     def __post_init__(self) -> None:
         rows = []
-        for i, row in enumerate(self.terms):
+        for i, row in enumerate(checks.listed(self.terms, "terms", "pairs")):
             if not isinstance(row, Sequence) or len(row) != 2 or checks.finite(row[1], f"terms[{i}][1]") == 0.0:
                 raise InputError(f"terms[{i}]: expected mu and alpha, which is not 0, got {row!r}")
             rows.append((checks.finite(row[0], f"terms[{i}][0]"), float(row[1])))

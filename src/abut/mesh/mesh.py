@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from abut import checks
 from abut.mesh.cell_block import CellBlock
 from abut.mesh.read import read_mesh
 from abut.mesh.record import MeshRecord
@@ -61,4 +62,4 @@ class Mesh(MeshRecord):
 
         Raises InputError for a file that is missing, truncated, of another kind, or whose mesh is unsound.
         """
-        return read_mesh(cls, Path(path))
+        return read_mesh(cls, checks.path(path, "Mesh.read: path"))

@@ -33,9 +33,12 @@ class MeshRecord:
         if points.shape[1] not in (2, 3):
             raise InputError(f"mesh: points: expected 2 or 3 coordinates each, got {points.shape[1]}")
         object.__setattr__(self, "points", points)
-        object.__setattr__(self, "blocks", tuple(self.blocks))
+        blocks = checks.listed(self.blocks, "mesh: blocks", "cell blocks")
+        for i, block in enumerate(blocks):
+            checks.instance(block, CellBlock, f"mesh: blocks[{i}]", "a cell block (abut.mesh.mesh.CellBlock)")
+        object.__setattr__(self, "blocks", blocks)
         for kind, shape in (("bodies", (None,)), ("surfaces", (None, 2)), ("node_sets", (None,))):
-            given = getattr(self, kind)
+            given = checks.mapping(getattr(self, kind), f"mesh: {kind}", "arrays of numbers")
             parts = {
                 name: checks.whole_numbers(part, f"mesh: {kind}: '{name}'", np.int64, shape)
                 for name, part in given.items()

@@ -155,6 +155,8 @@ class Support:
             raise InputError(f"support on '{self.on}': no component is prescribed; give x, y, z or normal")
         if "normal" in given and len(given) > 1:
             raise InputError(f"support on '{self.on}': give either normal or components, not both")
+        if self.axes is not None:
+            checks.instance(self.axes, Axes, f"support on '{self.on}': axes", "axes (abut.Axes)")
         if self.axes is not None and "normal" in given:
             raise InputError(f"support on '{self.on}': axes go with x, y, z; normal has its own direction")
         check_amplitude(self.amplitude, f"support on '{self.on}'")
@@ -231,7 +233,9 @@ class Equation:
     amplitude: History = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "terms", tuple(self.terms))
+        object.__setattr__(self, "terms", checks.listed(self.terms, "equation: terms", "terms"))
+        for i, term in enumerate(self.terms):
+            checks.instance(term, Term, f"equation: terms[{i}]", "a term (abut.Term)")
         checks.finite(self.value, "equation: value")
         if not any(term.coefficient for term in self.terms):
             raise InputError("equation: no term with a coefficient other than zero; give at least one")
@@ -251,7 +255,7 @@ def vector(values: Any, name: str) -> tuple[float, ...]:
 
 def check_motion(body: Any, where: str) -> None:
     """Raise InputError, beginning with ``where``, for a motion of a rigid body or coupling that is none."""
-    for name, amplitude in body.amplitudes.items():
+    for name, amplitude in checks.mapping(body.amplitudes, f"{where}: amplitudes", "an Amplitude").items():
         if name not in (*COMPONENTS, *TURNS) or getattr(body, name) is None:
             known = ", ".join(key for key in (*COMPONENTS, *TURNS) if getattr(body, key) is not None)
             raise InputError(f"{where}: amplitudes: {name!r} is none of the components that are given: {known}")

@@ -194,16 +194,16 @@ class Contact:
         return self.friction != 0.0
 
     def _check_sides(self) -> None:
-        given = [side for side in SIDES if getattr(self, side) != ""]
+        given = [side for side in SIDES if not isinstance(getattr(self, side), str) or getattr(self, side)]
         where = f"contact '{self.name}'" if self.name else "contact"
+        for side in given:
+            object.__setattr__(self, side, normalised(getattr(self, side), f"{where}: {side}"))
         if given not in ([*SIDES[:2]], [*SIDES[2:]]) and not (self.chosen and len(given) == len(SIDES)):
             got = ", ".join(f"{side} = {code(getattr(self, side))}" for side in given) or "none"
             raise InputError(
                 f"{where}: name two surfaces, of which abut chooses the contactor, or both contactor and target, not some "
                 f"of each (got {got})"
             )
-        for side in given:
-            object.__setattr__(self, side, normalised(getattr(self, side), f"{where}: {side}"))
         if self.first and self.contactor and {*self.named} != {self.contactor, self.target}:
             raise InputError(
                 f"{where}: its sides are {code(self.first)} and {code(self.second)}, not {code(self.contactor)} and "

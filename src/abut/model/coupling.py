@@ -80,16 +80,21 @@ class Coupling:
 
     def __post_init__(self) -> None:
         where = f"coupling '{self.name}'"
+        checks.text(self.name, f"{where}: name")
         checks.choice(self.kind, f"{where}: kind", KINDS)
         check_motion(self, where)
         if self.follow is not None:
-            object.__setattr__(self, "follow", tuple(self.follow))
+            letters = tuple(self.follow) if isinstance(self.follow, str) else self.follow  # type: ignore[unreachable]
+            object.__setattr__(self, "follow", checks.listed(letters, f"{where}: follow", "components"))
             for component in self.follow or ("",):
                 checks.choice(component, f"{where}: follow", COMPONENTS)
             if self.distributing:
                 raise InputError(f'{where}: follow goes with kind = "kinematic"; take it out')
         if self.weights is not None:
-            weights = tuple(checks.finite(value, f"{where}: weights") for value in self.weights)
+            weights = tuple(
+                checks.finite(value, f"{where}: weights")
+                for value in checks.listed(self.weights, f"{where}: weights", "numbers")
+            )
             if not self.distributing or not weights or min(weights) < 0.0 or not any(weights):
                 raise InputError(f'{where}: weights go with kind = "distributing" and are >= 0, not all of them 0')
             object.__setattr__(self, "weights", weights)

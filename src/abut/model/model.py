@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +31,7 @@ from abut.errors import InputError
 from abut.materials.material import Material, check_model
 from abut.mesh.check import check_entries
 from abut.mesh.mesh import Mesh
+from abut.mesh.record import MeshRecord
 from abut.model.body_forces import Load
 from abut.model.conditions import COMPONENTS, Equation, History, Rigid, Support
 from abut.model.consistency import check_equations, check_filled, check_loads, check_rigid, check_supports
@@ -48,6 +50,11 @@ from abut.model.step_ends import with_corners
 from abut.model.symmetry import held_directions
 
 PLANES = ("strain", "stress", "axisymmetric")
+RECORDS: dict[str, tuple[type, ...]] = {  # what the lists of a model are of
+    "solids": (Solid,), "supports": (Support,), "loads": get_args(Load), "contacts": (Contact,), "equations": (Equation,),
+    "rigid": (Rigid,), "probes": (Probe,), "rotations": (Rotation,), "couplings": (Coupling,), "preloads": (Preload,),
+    "springs": (Spring,),
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -137,21 +144,11 @@ class Model:
     physics: Sequence[Physics] = ()
 
     def __post_init__(self) -> None:
-        for name in (
-            "solids",
-            "supports",
-            "loads",
-            "contacts",
-            "equations",
-            "rigid",
-            "probes",
-            "rotations",
-            "couplings",
-            "preloads",
-            "springs",
-            "physics",
-        ):
-            object.__setattr__(self, name, checks.listed(getattr(self, name), name))
+        checks.instance(self.mesh, MeshRecord, "model: mesh", "a mesh (abut.Mesh)")
+        checks.instance(self.solve, SolveOptions, "model: solve", "options (abut.SolveOptions)")
+        for name, kinds in RECORDS.items():
+            object.__setattr__(self, name, checks.records(getattr(self, name), name, kinds))
+        object.__setattr__(self, "physics", checks.listed(self.physics, "physics"))
         check_entries(self.mesh)
         check_filled(self.mesh, self._named())
         self._check_plane()

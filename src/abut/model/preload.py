@@ -67,6 +67,10 @@ class Preload:
 
     def __post_init__(self) -> None:
         where = f"preload '{self.name}'"
+        checks.text(self.name, f"{where}: name")
+        for side in ("body", "surface"):
+            if not isinstance(getattr(self, side), str):
+                raise InputError(f"{where}: {side}: expected a name, got {getattr(self, side)!r}")
         if bool(self.body) == bool(self.surface):
             raise InputError(f"{where}: give either body or surface")
         if (self.force is None) == (self.shortening is None):

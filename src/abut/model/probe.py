@@ -127,7 +127,7 @@ def check_probes(probes: Sequence[Probe], mesh: Mesh, contacts: Collection[str])
 
 
 def _known(name: str | None, known: Collection[str], where: str, what: str) -> None:
-    if name is not None and name not in known:
+    if name is not None and (not isinstance(name, str) or name not in known):
         raise InputError(f"{where}: no {what} named {name!r}{nearest(str(name), known)}")
 
 

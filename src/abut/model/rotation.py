@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from abut import checks
 from abut.errors import InputError
 from abut.mesh.mesh import Mesh
-from abut.model.conditions import Amplitude, History, Support
+from abut.model.conditions import Amplitude, History, Support, vector
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class Rotation:
         for name in ("centre", "axis"):
             given = getattr(self, name)
             if given is not None:
-                object.__setattr__(self, name, tuple(checks.finite(value, f"{where}: {name}") for value in given))
+                object.__setattr__(self, name, vector(given, f"{where}: {name}"))
         if self.axis is not None and not any(self.axis):
             raise InputError(f"{where}: axis: expected a direction, got zeros")
         if self.amplitude is not None and not isinstance(self.amplitude, Amplitude):

@@ -67,6 +67,7 @@ class Spring:
 
     def __post_init__(self) -> None:
         where = f"spring '{self.name}'"
+        checks.text(self.name, f"{where}: name")
         for key in ALONG:
             value = getattr(self, key)
             if value is not None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -64,7 +64,7 @@ class Output:
         if isinstance(self.steps, str):
             checks.choice(self.steps, "output.steps", STEPS)
         else:
-            numbers = [self.steps] if isinstance(self.steps, int) else list(self.steps)
+            numbers = list(self.steps) if isinstance(self.steps, Iterable) else [self.steps]
             if not numbers or any(isinstance(n, bool) or not isinstance(n, int) or n < 1 for n in numbers):
                 raise InputError(
                     f'output.steps: expected "all", "last", a number > 0 or a list of such, got {self.steps!r}; 10 means '
@@ -74,7 +74,7 @@ class Output:
             given = getattr(self, key)
             if isinstance(given, str):
                 raise InputError(f"output.{key}: expected a list of names, got {given!r}; write [{given!r}]")
-            for name in given:
+            for name in checks.listed(given, f"output.{key}", "names"):
                 checks.choice(name, f"output.{key}", known)
 
     def wants(self, number: int, last: bool = False) -> bool:

@@ -63,6 +63,7 @@ def to_pyvista(solution: Solution, step: int = -1) -> Foreign:
     >>> float(data["bodies"]["bar"]["displacement"][:, 0].max().round(6))  # stress over stiffness, times the length
     0.02
     """
+    checks.instance(solution, Solution, "to_pyvista", "a solution (abut.Solution)")
     pyvista = _pyvista()
     state = _step(solution, step)
     bodies = pyvista.MultiBlock()
@@ -110,8 +111,11 @@ def plot(
         Without PyVista, for an unknown quantity or step, for one of friction where no contact has any, and where the
         file cannot be written.
     """
+    checks.instance(solution, Solution, "plot", "a solution (abut.Solution)")
     checks.choice(what, "plot: what", tuple(FIELDS))
     checks.finite(scale, "plot: scale")
+    if path is not None:
+        checks.path(path, "plot: path")
     pyvista = _pyvista()
     data = to_pyvista(solution, step)
     plotter = pyvista.Plotter(off_screen=path is not None, window_size=(1280, 860))

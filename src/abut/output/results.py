@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from abut import checks
 from abut.diagnosis.advice import remedies, unsettled
 from abut.diagnosis.cures import cure
 from abut.io.atomic import write_text
@@ -94,7 +95,14 @@ def write(
     ...     sorted(path.name for path in abut.write(abut.solve(bar), folder).iterdir())
     ['fields.pvd', 'fields_0001.vtu', 'forces.csv', 'history.csv', 'report.html', 'run.jsonl', 'summary.json']
     """
-    folder = Path(directory)
+    checks.instance(solution, Solution, "write", "a solution (abut.Solution)")
+    folder = checks.path(directory, "write: directory")
+    checks.function(fields, "write: fields")
+    checks.instance(output, Output, "write: output", "what is written (abut.Output)")
+    if origin is not None:
+        checks.instance(origin, Origin, "write: origin", "an origin (abut.report.Origin)")
+    if steps is not None:
+        checks.records(steps, "write: steps", (Step,))
     lock = Lock(folder)
     try:
         return write_held(solution, folder, origin, steps, fields, output)

@@ -21,10 +21,11 @@ from abut.linear.saddle_point import saddle
 from abut.linear.schur_preconditioner import PressureBlock, half_spaces, interfaces, pressure_block
 from abut.linear.solver import Count, NotConverged, Prepared, Solve
 from abut.parallel.factors import by_factors, direct_solver, drop_factors, factorise, keep_factors
-from abut.parallel.krylov import MULTIGRID, STIFFNESS, Task, iterate, multigrid
+from abut.parallel.krylov import Task, iterate, multigrid
 from abut.parallel.matrix import Distributed
+from abut.parallel.options import krylov_method, preconditioner, require_known, wants_factors, wants_iterations
 from abut.parallel.partition import Layout
-from abut.parallel.systems import FACTORS, Answer, Conditions
+from abut.parallel.systems import Answer, Conditions
 from abut.parallel.team import Team
 from abut.problem.linearised import Linearised, Rows
 from abut.problem.pair import Pair
@@ -302,6 +303,7 @@ class PetscDirect:
 
 def choose(problem: ContactProblem) -> str:
     """As ``abut.linear.choice.choose``; PETSc options come first. Raises InputError."""
+    require_known()
     coupled = problem.constraints.coupled
     if wants_factors():
         return "direct"
@@ -318,37 +320,6 @@ def choose(problem: ContactProblem) -> str:
         )
     linear = "amg" if wants_iterations() else "auto"
     return chosen(linear, problem.n_free, problem.pairs, problem.model.mesh, coupled, LARGE_ON_MANY)
-
-
-def preconditioner() -> str:
-    """PETSc's name of what preconditions the stiffness."""
-    from petsc4py import PETSc
-
-    options = PETSc.Options()
-    given = options.getString("pc_type", MULTIGRID["pc_type"])
-    return str(options.getString(STIFFNESS + "pc_type", given))
-
-
-def krylov_method() -> str:
-    """What the user's PETSc options name, else nothing."""
-    from petsc4py import PETSc
-
-    return str(PETSc.Options().getString("ksp_type", ""))
-
-
-def wants_factors() -> bool:
-    """Whether the user's PETSc options ask for a direct solver."""
-    from petsc4py import PETSc
-
-    return str(PETSc.Options().getString("pc_type", "")) in FACTORS
-
-
-def wants_iterations() -> bool:
-    """Whether they ask for another preconditioner, or another Krylov method."""
-    from petsc4py import PETSc
-
-    options = PETSc.Options()
-    return not wants_factors() and any(options.hasName(name) for name in ("pc_type", "ksp_type", "stiffness_pc_type"))
 
 
 def spread(rows: Sparse, layout: Layout) -> Sparse:

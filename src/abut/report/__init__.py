@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from abut import checks
 from abut.io.atomic import write_file
 from abut.report.chart import Beside, Chart
 from abut.report.origin import Origin, read_origin
@@ -57,7 +58,12 @@ def write_report(
     ...     abut.write_report(abut.solve(bar), f"{folder}/bar.html").name
     'bar.html'
     """
-    path = Path(path)
+    checks.instance(solution, Solution, "write_report", "a solution (abut.Solution)")
+    path = checks.path(path, "write_report: path")
+    if origin is not None:
+        checks.instance(origin, Origin, "write_report: origin", "an origin (abut.report.Origin)")
+    if beside is not None:
+        checks.instance(beside, Beside, "write_report: beside", "another solution (abut.report.Beside)")
     data = page(solution, origin or Origin(path.stem), beside).encode(
         "utf-8", "backslashreplace"
     )  # names of files may be no text

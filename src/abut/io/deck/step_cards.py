@@ -90,7 +90,7 @@ def steps(
 ) -> tuple[Step, ...]:
     """The steps; ``reasons`` gets those without procedure."""
     result = []
-    total = 0.0
+    total, finite = 0.0, False
     for number, group in enumerate(groups, start=1):
         period, increments, begin = 1.0, Increments(1.0, math.inf, False), total
         with reasons.gathered():
@@ -108,7 +108,8 @@ def steps(
                     if operation == "NEW":
                         new.add(KIND[card.key])
         first = group[0]
-        finite = first.has("NLGEOM") and key(first.get("NLGEOM") or "") != "NO"
+        if first.has("NLGEOM"):  # holds until it is NO
+            finite = key(first.get("NLGEOM") or "") != "NO"
         result.append(Step(number, period, tuple(values), frozenset(new), first.place, increments, finite, begin))
         total = begin + period
     return tuple(result)

@@ -1,0 +1,157 @@
+"""Whatever public names are called with: one message, that of abut, or Python's own about the call itself."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import abut
+from abut.mesh import make
+
+BARE = (AttributeError, KeyError, IndexError, TypeError, ValueError)
+NOTHING = (None, 3, "", 3.5, [], {})  # what a user may have in a variable that should hold something else
+ERRORS = {name for name in abut.__all__ if isinstance(getattr(abut, name), type) and "Error" in name}
+RESULTS = {"FoundContact", "Solution"}  # abut makes these
+LISTS = (
+    "solids", "supports", "loads", "contacts", "equations", "rigid", "probes", "rotations", "couplings", "preloads",
+    "springs",
+)  # fmt: skip
+
+BLOCKS = {"a": make.rectangle([0, 2], [0, 1], cells=[2, 1]), "b": make.rectangle([0, 2], [1, 2], cells=[2, 1])}
+MESH = make.join(BLOCKS)
+STEEL = abut.LinearElastic(100.0, 0.3)
+MODEL = abut.Model(
+    MESH,
+    [abut.Solid("a", STEEL), abut.Solid("b", STEEL)],
+    supports=[abut.Support("a.bottom", x=0, y=0), abut.Support("b.left", x=0)],
+    loads=[abut.Pressure("b.top", 1.0)],
+    contacts=[abut.Contact("b.bottom", "a.top")],
+    plane="strain",
+)
+
+
+def within(name: str) -> Callable[[Any], object]:
+    """Puts a record into a list of a model."""
+    return lambda record: replace(MODEL, **{name: [*getattr(MODEL, name), record]})
+
+
+def kept(record: object) -> object:
+    return record
+
+
+VALID: dict[str, tuple[dict[str, Any], Callable[[Any], object]]] = {  # arguments, and what uses the record
+    "Amplitude": ({"points": [(0, 0), (1, 1)]}, lambda a: within("loads")(abut.Pressure("b.right", 1.0, amplitude=a))),
+    "ArrudaBoyce": ({"bulk": 100.0, "shear": 1.0, "locking": 3.0}, kept),
+    "Axes": ({"kind": "cylindrical"}, lambda axes: within("supports")(abut.Support("a.left", x=0, axes=axes))),
+    "BodyForce": ({"value": (1.0, 0.0)}, within("loads")),
+    "Centrifugal": ({"speed": 1.0}, within("loads")),
+    "Contact": ({"first": "b.bottom", "second": "a.top"}, lambda contact: replace(MODEL, contacts=[contact])),
+    "Coupling": ({"name": "c", "on": "b.right"}, within("couplings")),
+    "Equation": ({"terms": [abut.Term(0, "y", 1.0)]}, within("equations")),
+    "Force": ({"on": "b.right", "value": (1.0, 0.0)}, within("loads")),
+    "Gravity": ({"value": (1.0, 0.0)}, within("loads")),
+    "Hencky": ({"young": 1.0, "poisson": 0.3}, kept),
+    "Integration": ({}, kept),
+    "LinearElastic": ({"young": 1.0, "poisson": 0.3}, kept),
+    "Mesh": ({"points": MESH.points, "blocks": MESH.blocks, "bodies": MESH.bodies}, kept),
+    "Model": ({"mesh": MESH, "solids": MODEL.solids, "plane": "strain"}, kept),
+    "Moment": ({"on": "b.right", "value": 1.0}, within("loads")),
+    "MooneyRivlin": ({"bulk": 100.0, "c10": 1.0, "c01": 1.0}, kept),
+    "NeoHooke": ({"young": 1.0, "poisson": 0.3}, kept),
+    "NodalForce": ({"on": "b.right", "value": (1.0, 0.0)}, within("loads")),
+    "Ogden": ({"bulk": 100.0, "terms": [(1.0, 2.0)]}, kept),
+    "Output": ({}, kept),
+    "Plastic": ({"young": 1.0, "poisson": 0.3, "yield_stress": 1.0}, kept),
+    "Preload": ({"name": "p", "surface": "b.left", "force": 1.0}, within("preloads")),
+    "Pressure": ({"on": "b.right", "value": 1.0}, within("loads")),
+    "PressureOverclosure": ({"points": [(0, 0), (1, 1)]}, kept),
+    "Probe": ({"name": "p", "at": (0.0, 0.0)}, within("probes")),
+    "Rigid": ({"body": "a"}, within("rigid")),
+    "Rotation": ({"on": "b.left", "angle": 1.0, "centre": (0.0, 0.0)}, within("rotations")),
+    "Solid": ({"body": "a", "material": STEEL}, kept),
+    "SolveOptions": ({}, lambda solve: replace(MODEL, solve=solve)),
+    "Spring": ({"name": "s", "on": "b.right", "x": 1.0}, within("springs")),
+    "Support": ({"on": "b.right", "x": 0.0}, within("supports")),
+    "Temperature": ({"on": "b", "value": 1.0}, within("loads")),
+    "Term": ({"on": 0, "component": "x", "coefficient": 1.0}, lambda term: within("equations")(abut.Equation([term]))),
+    "Traction": ({"on": "b.right", "value": (1.0, 0.0)}, within("loads")),
+    "Yeoh": ({"bulk": 100.0, "c10": 1.0}, kept),
+    "add_surfaces": ({"mesh": MESH, "found": ()}, kept),
+    "check": ({"model": MODEL}, kept),
+    "find_contacts": ({"mesh": MESH}, kept),
+}  # fmt: skip
+OF_SOLUTIONS = {"plot", "solve", "to_pyvista", "write", "write_report"}  # whose other arguments take a solution
+
+
+def sound(call: Callable[[], object], what: str) -> None:
+    """A call may succeed, or fail with a message of abut's."""
+    try:
+        call()
+    except abut.AbutError:
+        return
+    except BARE as error:
+        pytest.fail(f"{what} ends in {type(error).__name__}: {error}")
+
+
+def test_every_public_name_is_called() -> None:
+    assert {*VALID, *OF_SOLUTIONS, *ERRORS, *RESULTS} == set(abut.__all__)
+
+
+@pytest.mark.parametrize("name", sorted({*VALID, *OF_SOLUTIONS}))
+def test_first_arguments_that_are_none(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """All that must be given at once."""
+    monkeypatch.chdir(tmp_path)
+    call = getattr(abut, name)
+    needed = [key for key, p in inspect.signature(call).parameters.items() if p.default is p.empty]
+    for value in NOTHING:
+        sound(lambda v=value: call(**dict.fromkeys(needed, v)), f"abut.{name}({', '.join(needed)} = {value!r})")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", sorted(VALID))
+def test_each_argument_that_is_none(name: str) -> None:
+    """One at a time, in a model where that is where it goes."""
+    given, use = VALID[name]
+    for key in inspect.signature(getattr(abut, name)).parameters:
+        for value in NOTHING:
+            sound(
+                lambda k=key, v=value: use(getattr(abut, name)(**{**given, k: v})), f"abut.{name}(..., {key}={value!r})"
+            )
+
+
+@pytest.mark.parametrize("name", LISTS)
+def test_records_in_the_wrong_list(name: str) -> None:
+    """Such as a support among the loads: says which entry, and what belongs there."""
+    for value in (None, 3, "x", [], abut.Probe("p", at=(0.0, 0.0)), abut.Support("a.left", x=0)):
+        if (name, type(value)) in (("probes", abut.Probe), ("supports", abut.Support)):
+            continue
+        with pytest.raises(abut.InputError, match=rf"^{name}\[\d\]: expected \w+"):
+            within(name)(value)
+
+
+@pytest.mark.parametrize("value", [None, 3, "", b"mesh.msh"])
+def test_paths_that_are_none(value: Any) -> None:
+    solution = abut.solve(MODEL)
+    with pytest.raises(abut.InputError, match=r"Mesh\.read: path: expected a path"):
+        abut.Mesh.read(value)
+    with pytest.raises(abut.InputError, match="write: directory: expected a path"):
+        abut.write(solution, value)
+    with pytest.raises(abut.InputError, match="write_report: path: expected a path"):
+        abut.write_report(solution, value)
+
+
+@pytest.mark.parametrize("value", [3, "", [], {}])
+def test_options_of_functions_that_are_none(value: Any, tmp_path: Path) -> None:
+    for key in ("observer", "on_step", "resume", "settings"):
+        sound(lambda k=key: abut.solve(MODEL, **{k: value}), f"abut.solve(model, {key}={value!r})")
+    solution = abut.solve(MODEL)
+    for key in ("origin", "steps", "fields", "output"):
+        sound(lambda k=key: abut.write(solution, tmp_path, **{k: value}), f"abut.write(..., {key}={value!r})")
+    path = tmp_path / "report.html"
+    for key in ("origin", "beside"):
+        sound(lambda k=key: abut.write_report(solution, path, **{k: value}), f"abut.write_report(..., {key}={value!r})")
