@@ -20,11 +20,13 @@ from abut.diagnosis.cost import foresee
 from abut.diagnosis.quality import quality
 from abut.errors import InputError
 from abut.job import load_job
-from abut.linear.cost_model import LARGE, MEMORY, Effort, of_stiffness, seconds
+from abut.linear.cost_model import LARGE, MEMORY, Effort, effort, of_stiffness, seconds
 from abut.mesh.make import box, join, rectangle
 from abut.mesh.mesh import CellBlock, Mesh
 from abut.mesh.shapes import CORNERS
+from abut.nonlinear.settings import DEFAULT
 from abut.problem.constraints import supports
+from models.friction import pushed
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 TEXT = (EXAMPLES / "two-blocks" / "job.toml").read_text()
@@ -414,3 +416,21 @@ def test_any_broken_line_ends_in_findings(
     captured = capsys.readouterr()
     assert captured.err == ""
     assert status in (0, 2, 4), captured.out
+
+
+def test_time_with_friction_counts_the_onset_of_slip() -> None:
+    """A block that is drawn along at small displacements: steps that abut finds are more than the one that it takes without
+    friction; those that are given are what they are."""
+
+    def foreseen(friction: float, **solve: Any) -> tuple[str, float]:
+        model = replace(pushed(friction=friction), solve=abut.SolveOptions(**solve))
+        (found,) = (finding for finding in check(model).findings if "free displacements" in finding.what)
+        return found.what, effort(model, 100, ()).steps
+
+    text, steps = foreseen(0.3)
+    assert steps > DEFAULT.steps.points
+    assert f"for {steps} load steps" in text
+    for friction, solve, count in ((0.0, {}, 1), (0.3, {"steps": 5}, 5)):
+        text, steps = foreseen(friction, **solve)
+        assert steps == count
+        assert "load steps; a run finds them" not in text

@@ -17,7 +17,7 @@ from abut.nonlinear.large_steps import LargeSteps
 from abut.nonlinear.march import Control, march
 from abut.nonlinear.pace import pace_of
 from abut.problem.backend import Serial
-from abut.problem.step_error import Onset
+from abut.problem.onset import Onset
 from abut.problem.terms import Motion, Share
 from abut.solution import Iteration
 from abut.types import Sparse

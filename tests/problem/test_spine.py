@@ -26,7 +26,7 @@ from abut.nonlinear.pace import Pace, given_pace
 from abut.nonlinear.settings import DEFAULT
 from abut.nonlinear.stepping import SmallSteps
 from abut.output.restart import load_steps, save_step
-from abut.problem.step_error import Onset
+from abut.problem.onset import Onset
 from abut.verify import law_tangents, material_tangent
 from models.friction import rubbed
 from models.oracle import assembled

@@ -30,9 +30,10 @@ from abut.nonlinear.stepping import SmallSteps
 from abut.probing import Place, find_places, read
 from abut.problem.assembly import Assembled, assemble, prescribed
 from abut.problem.clock import Clock
+from abut.problem.onset import Most, Onset, onset
 from abut.problem.restraint import require_balance
 from abut.problem.stabilising import is_dragged
-from abut.problem.step_error import Onset, landed_in, onset
+from abut.problem.step_error import landed_in
 from abut.solution import Iteration, Observer, OnStep, Phase, Saved, Solution, Step
 from abut.solution.state import State
 
@@ -180,15 +181,18 @@ class Run:
         if self.solver.effort:
             self.told.note(self.solver.effort)
 
-    def _onset(self, before: State, now: State) -> Onset:
-        return onset(self.assembled.problem.pairs, before, now, weights(self.model.histories, now.time))
+    def _onset(self, earlier: State | None, before: State, now: State) -> Onset:
+        steps, factors = self.settings.steps, weights(self.model.histories, now.time)
+        most = Most(1.0 / steps.points, steps.aim * steps.bent)
+        return onset(self.assembled.problem.pairs, earlier, before, now, factors, most)
 
     def _pace(self, states: Sequence[State], done: Sequence[Saved]) -> Pace:
         """After the steps ``done``, which ended in ``states`` but for the first, that of the start."""
         pace = self._begun()
-        for before, saved in zip(states, done):
+        for earlier, before, saved in zip((None, *states), states, done):
             tried = strides(self.settings) if is_dragged(saved.state) else ()
-            share, begun = landed_in(saved.state).share, self._onset(before, saved.state)
+            begun = self._onset(earlier if pace.goes_on else None, before, saved.state)
+            share = landed_in(saved.state).share
             pace.repeat(saved.state.time, len(saved.iterations), share, begun, tried)
         return pace
 

@@ -9,7 +9,7 @@ from importlib.util import find_spec
 from abut.cells import CELLS
 from abut.diagnosis.finding import Finding
 from abut.linear.choice import chosen
-from abut.linear.cost_model import FOUND, LARGE, LARGE_FINITE, LARGE_ON_MANY, MEMORY, effort, seconds
+from abut.linear.cost_model import LARGE, LARGE_FINITE, LARGE_ON_MANY, MEMORY, effort, seconds, typical_steps
 from abut.linear.direct import available_memory
 from abut.model import Model
 from abut.problem.constraints import Constraints
@@ -81,8 +81,10 @@ def cost(model: Model, constraints: Constraints, pairs: Sequence[Pair]) -> list[
 
 
 def _known(model: Model) -> str:
-    if model.finite and model.solve.finds_steps:
-        return f"for {FOUND} load steps; a run finds them, where it is easy fewer"
+    steps = typical_steps(model)
+    if steps != len(model.ends):
+        easy = "where it is easy" if model.finite else "where contact does not slip"
+        return f"for {steps} load steps; a run finds them, {easy} fewer"
     return "to a factor of two"
 
 

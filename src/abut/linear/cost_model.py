@@ -44,6 +44,9 @@ FIRST, NEXT = 10, 5  # solutions of the first load step, and of one that begins 
 KRYLOV, STRETCHED = 75, 0.8  # iterations of a step between cells of equal edges; power of the ratio of edges
 START = 0.005
 FOUND, ITERATIONS = 18, 6  # load steps at large displacements where a run finds them, and iterations in one: 5 to 8
+SLIPS = (
+    10  # load steps at small displacements that follow the onset of slip, on one way: 8 to 12, with those taken again
+)
 FINITE, TANGENT, UNSYMMETRIC = (
     4e-3,
     3.0,
@@ -120,9 +123,20 @@ def effort(model: Model, displacements: int, pairs: Sequence[Pair]) -> Effort:
         pairs=len(pairs),
         bodies=len(model.mesh.bodies),
         cutting=sum(map(_cutting, pairs)),
-        steps=FOUND if model.finite and model.solve.finds_steps else len(model.ends),
+        steps=typical_steps(model),
         finite=model.finite,
         stretched=float(np.exp(np.log(ratios(model.mesh)).mean())),
+    )
+
+
+def typical_steps(model: Model) -> int:
+    """Load steps of a run; a typical number where it finds them."""
+    if not model.solve.finds_steps:
+        return len(model.ends)
+    return (
+        FOUND
+        if model.finite
+        else len(model.ends) + (SLIPS if any(contact.frictional for contact in model.contacts) else 0)
     )
 
 

@@ -68,7 +68,7 @@ class SolveOptions:
 
     @property
     def finds_steps(self) -> bool:
-        """Whether a run at large displacements finds all of its load steps."""
+        """Whether a run at large displacements, or with friction, finds all of its load steps."""
         return self.steps == AUTO and not self.times
 
     @property

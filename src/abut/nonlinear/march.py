@@ -10,7 +10,8 @@ from abut.linear.solver import LinearSolver, NotConverged
 from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.pace import Pace
 from abut.nonlinear.settings import DEFAULT, Settings
-from abut.problem.step_error import Onset, landed_in
+from abut.problem.onset import Onset
+from abut.problem.step_error import landed_in
 from abut.solution import Iteration
 from abut.solution.state import State
 
@@ -19,7 +20,8 @@ from abut.solution.state import State
 class Control:
     """limit: of iterations in a step; observe: called with each of them; begins: called with each step's number and end;
     prepares: called before a linear solver is set up; prepared: called with its note; fallback: another solver where one
-    fails; halves: called with an attempt that failed and the end of the next one; onset: of slip between two states;
+    fails; halves: called with an attempt that failed and the end of the next one; onset: of slip between two
+    states, after another one if what it shows goes on;
     refines: called with a step that jumps over it and the end of the next one; settings: thresholds."""
 
     limit: int
@@ -29,7 +31,7 @@ class Control:
     prepared: Callable[[str], None]
     fallback: Callable[[int, NotConverged], LinearSolver]
     halves: Callable[[Attempt, float], None]
-    onset: Callable[[State, State], Onset]
+    onset: Callable[[State | None, State, State], Onset]
     refines: Callable[[Attempt, float], None]
     settings: Settings = DEFAULT
 
@@ -94,7 +96,7 @@ def march(stepper: Stepper, done: Sequence[State], pace: Pace, control: Control)
             pace.halve()
             control.halves(last, pace.end or time)
             continue
-        onset = control.onset(begin.before, last.state)
+        onset = control.onset(begin.earlier if pace.goes_on else None, begin.before, last.state)
         if len(attempts) == 1 and pace.refine(onset):
             control.refines(last, pace.end or time)
             continue

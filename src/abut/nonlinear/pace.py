@@ -10,7 +10,7 @@ from abut.model.conditions import History
 from abut.model.step_ends import SAME as NEAR
 from abut.model.step_ends import apart, named_times
 from abut.nonlinear.settings import DEFAULT, Settings
-from abut.problem.step_error import Onset
+from abut.problem.onset import Onset
 
 NO_ONSET = Onset()
 
@@ -42,6 +42,7 @@ class Pace:
         self._length = self._fresh()  # as iterations tell
         self._fits = slips is not None and slips.fits
         self._curve = self._settings.smallest * self._leg if self._fits else math.inf  # as the onset of slip asks for
+        self._goes_on = False
 
     @property
     def goal(self) -> float | None:
@@ -67,6 +68,11 @@ class Pace:
     def turned(self) -> bool:
         """Whether the way ahead is new."""
         return any(abs(self.time - kink) <= NEAR for kink in self._kinks)
+
+    @property
+    def goes_on(self) -> bool:
+        """Whether tractions go on as in the last step: neither a new way nor what a fit had alone."""
+        return self._goes_on and not self.turned
 
     @property
     def stuck(self) -> bool:
@@ -106,13 +112,13 @@ class Pace:
         end = self.end if at is None else at
         assert end is not None
         first, taken, limited = self._fits and self.time == 0.0, end - self.time, self._curve < self._length
-        self.time = end
+        self.time, self._goes_on = end, not first
         if any(abs(end - leg) < self._same for leg in self._legs):
-            self._length, self._curve = self._fresh(), math.inf
+            self._length, self._curve, self._goes_on = self._fresh(), math.inf, False
             return
         if self._follows:
             free = first or onset.sticks <= 0.0
-            self._curve = math.inf if free else self._rounded(min(2.0, self._settings.aim * self._next(onset)) * taken)
+            self._curve = math.inf if free else self._rounded(self._factor(onset) * taken)
         steps = self._settings
         hard = iterations > 2 * steps.easy
         factor = steps.growth if iterations <= steps.easy else steps.shrink if hard else 1.0
@@ -144,12 +150,17 @@ class Pace:
         quarters = math.floor(4.0 * math.log2(length / self._leg) + 1e-6)
         return float(self._leg * 2.0 ** (quarters / 4.0))
 
+    def _factor(self, onset: Onset) -> float:
+        """How much longer the next step is than one with an onset of slip that was taken."""
+        longest = 2.0 if onset.fresh > 0.0 else float(self._settings.points)
+        return min(longest, onset.ahead, self._settings.aim * self._next(onset))
+
     def _next(self, onset: Onset) -> float:
         """How much longer a step may be than the one that shows an onset of slip, theory (R21)."""
-        fresh, turned = onset.shares
-        if fresh <= 0.0 or turned <= 0.0:
+        fresh, bent = onset.shares
+        if fresh <= 0.0 or bent <= 0.0:
             return math.inf
-        return max(1.0 / (self._settings.points * fresh), math.sqrt(self._settings.bent / turned))
+        return max(1.0 / (self._settings.points * fresh), math.sqrt(self._settings.bent / bent))
 
     @property
     def _leg(self) -> float:
@@ -166,7 +177,7 @@ def given_pace(
     """Load steps that end at given times; parts: those that fail are taken in parts, down to the root of the smallest share
     (a sixty-fourth); slips: there are further ones where contact begins to slip."""
     smallest = settings.steps.smallest**0.5 if parts else 1.0
-    return Pace(ends, first=1.0, legs=ends[:-1], given=smallest, slips=slips, settings=settings)
+    return Pace(ends, first=1.0, legs=ends[:-1], kinks=ends[:-1], given=smallest, slips=slips, settings=settings)
 
 
 def pace_of(

@@ -76,7 +76,9 @@ class StepSettings:
     shrink: float = _of(0.7, "step over the last one", "after a hard step", "test_pace.py")
     landed: float = _of(0.01, "of friction", "at points that touch and stick in one step", "test_step_error.py")
     points: int = _of(8, "load steps", "over which contact begins to slip, theory (R21)", "test_onset_of_slip.py")
-    bent: float = _of(0.01, "of tractions", "turns in a step while contact begins to slip", "test_onset_of_slip.py")
+    bent: float = _of(
+        0.01, "of friction", "missed by the straight line of a step where slip begins", "test_onset_of_slip.py",
+    )  # fmt: skip
     aim: float = _of(0.8, "of the longest step", "that the onset of slip allows", "test_onset_of_slip.py")
     smallest: float = _of(
         1.0 / 4096.0, "of the way to the next goal", "step; its root where the user gives steps", "test_pace.py",

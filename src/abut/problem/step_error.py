@@ -1,16 +1,14 @@
-"""What the load steps leave open of friction: points that touch and stick in the same step, theory (G21), and those that
-stick at its beginning and slip at its end, theory (R21)."""
+"""What the load steps leave open of friction: points that touch and stick in the same step, theory (G21)."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.problem.pair import Pair, by_pair
-from abut.solution.state import OPEN, SLIPPING, State
+from abut.problem.pair import Pair
+from abut.solution.state import State
 
 Array = NDArray[np.float64]
 
@@ -48,9 +46,9 @@ def landed(pair: Pair, end: PairEnd, factors: Array) -> Landed:
     weight = pair.weight[normal]
     moved = np.zeros(along.shape)
     moved[there] = end.shift[along[there] - len(pair.space)]
-    slipping = _slipping(pair, end.slipping)
-    limit = weight * _bound(pair, end.multipliers, end.closed[normal], factors)
-    fresh = end.closed[normal] & end.open[normal] & ~slipping
+    slips = slipping(pair, end.slipping)
+    limit = weight * bound(pair, end.multipliers, end.closed[normal], factors)
+    fresh = end.closed[normal] & end.open[normal] & ~slips
     unsure = np.minimum(limit, pair.stiffness * np.linalg.norm(moved, axis=1))[fresh]
     return Landed(float(unsure.sum()), float(limit.sum()))
 
@@ -62,55 +60,14 @@ def landed_in(state: State) -> Landed:
     return Landed(float(unsure), float(limit))
 
 
-@dataclass(frozen=True)
-class Onset:
-    """Of a step, forces by area: fresh: of friction at points that stick at its beginning and slip at its end, or slip the
-    other way; turned: by how much their tractions have changed, beside what follows from the pressure; sticks: of friction
-    at points that stick at its end; limit: what friction carries at most."""
-
-    fresh: float = 0.0
-    turned: float = 0.0
-    sticks: float = 0.0
-    limit: float = 0.0
-
-    @property
-    def shares(self) -> tuple[float, float]:
-        """``fresh`` and ``turned`` of what friction carries at most; none where nothing presses."""
-        return (self.fresh / self.limit, self.turned / self.limit) if self.limit > 0.0 else (0.0, 0.0)
-
-
-def onset(pairs: Sequence[Pair], before: State, now: State, factors: Array) -> Onset:
-    """Between two converged states; factors: of the model's histories at the second one. As in theory (R21)."""
-    total = np.zeros(4)
-    values = [by_pair(pairs, part) for part in (before.multipliers, before.status, now.multipliers, now.status)]
-    for pair, old, was, new, status in zip(pairs, *values):
-        if not pair.frictional:
-            continue
-        limit = pair.weight[pair.normal] * _bound(pair, new, status[pair.normal] != OPEN, factors)
-        first, last = (_shares(pair, each, factors) for each in (old, new))
-        change = np.linalg.norm(last - first, axis=1)
-        slips, slipped = _slipping(pair, status == SLIPPING), _slipping(pair, was == SLIPPING)
-        fresh = slips & (was[pair.normal] != OPEN) & (old[pair.normal] > 0.0) & (~slipped | (change > 1.0))
-        total += [limit[fresh].sum(), limit[fresh] @ change[fresh], limit[~slips].sum(), limit.sum()]
-    return Onset(*total.tolist())
-
-
-def _slipping(pair: Pair, flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def slipping(pair: Pair, flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """(n_functions,) those of which a tangential multiplier has the flag, of (n,)."""
     along = pair.index[:, 1:]
     return np.asarray(((along >= 0) & flags[np.maximum(along, 0)]).any(axis=1))
 
 
-def _bound(pair: Pair, multipliers: Array, closed: NDArray[np.bool_], factors: Array) -> Array:
+def bound(pair: Pair, multipliers: Array, closed: NDArray[np.bool_], factors: Array) -> Array:
     """(n_functions,) the traction that friction carries at most; the pressure where nothing slips, none unless closed."""
     pressure = np.maximum(multipliers[pair.normal], 0.0)
-    bound = pair.friction(factors).at(pressure)[0]
-    return np.where(closed, np.where(np.isfinite(bound), bound, pressure), 0.0)
-
-
-def _shares(pair: Pair, multipliers: Array, factors: Array) -> Array:
-    """(n_functions, dim - 1) tractions over what friction carries at most; none where nothing presses."""
-    along = pair.index[:, 1:]
-    traction = np.where(along >= 0, multipliers[np.maximum(along, 0)], 0.0)
-    bound = _bound(pair, multipliers, multipliers[pair.normal] > 0.0, factors)[:, None]
-    return np.divide(traction, bound, out=np.zeros_like(traction), where=bound > 0.0)
+    most = pair.friction(factors).at(pressure)[0]
+    return np.where(closed, np.where(np.isfinite(most), most, pressure), 0.0)
