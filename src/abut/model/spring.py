@@ -32,8 +32,6 @@ class Spring:
         A surface or node set.
     to : str, optional
         A node set of as many nodes, in the order of their numbers, at the other end; left out: the ground.
-    point : (dim,) of float, optional
-        Of a node set, in place of ``to``: a point fixed in space that all its nodes are tied to.
     x, y, z : float or table, optional
         Along the global axes.
     normal : float or table, optional
@@ -44,6 +42,8 @@ class Spring:
         Of a surface: stiffness per area [force/length^3], tables of (displacement, force per area).
     weak : bool
         Only there to keep loose parts in place: the certificate fails where it carries more than a thousandth of the forces.
+    point : (dim,) of float, optional
+        Of a node set, in place of ``to``: a point fixed in space that all its nodes are tied to.
 
     Raises
     ------
