@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import abut
@@ -110,3 +111,41 @@ def test_weak_springs_are_judged_by_what_they_carry():
 def test_refused(given, words):
     with pytest.raises(InputError, match=words):
         column([abut.Spring("spring", **given)])
+
+
+@pytest.mark.parametrize("kinematics", ["small", "finite"])
+def test_to_a_fixed_point(kinematics):
+    """Springs at the nodes of the foot along (3, 0, 4) / 5 carry 10 upward, and three quarters of that across."""
+    model = column([], kinematics=kinematics)
+    mesh = model.mesh
+    foot = {f"foot-{i}": [node] for i, node in enumerate(mesh.nodes_of("column.bottom"))}
+    sets = {name: np.array(nodes) for name, nodes in foot.items()}
+    springs = [
+        abut.Spring(name, name, along=100.0 / len(sets), point=tuple(mesh.points[nodes[0]] - [3.0, 0.0, 4.0]))
+        for name, nodes in sets.items()
+    ]
+    model = replace(
+        model,
+        mesh=replace(mesh, node_sets={**sets, "all": np.arange(len(mesh.points))}),
+        supports=[abut.Support("all", x=0, y=0)],
+        springs=springs,
+    )
+    solution = abut.solve(model)
+    carried = sum(solution.steps[-1].springs[name] for name in sets)
+    assert carried == pytest.approx([7.5, 0.0, 10.0], abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("given", "says"),
+    [
+        ({"along": 1.0, "point": (0, 0)}, r"springs\[0\]\.point: expected 3 numbers"),
+        ({"x": 1.0, "point": (0, 0, 0)}, "point goes with along alone"),
+        ({"along": 1.0, "point": (0, 0, 0), "to": "b"}, "point goes with along alone"),
+        ({"along": 1.0}, "or with point"),
+    ],
+)
+def test_points_that_do_not_fit(given, says):
+    model = column([])
+    mesh = replace(model.mesh, node_sets={"a": np.array([0])})
+    with pytest.raises(InputError, match=says):
+        replace(model, mesh=mesh, springs=[abut.Spring("s", "a", **given)])

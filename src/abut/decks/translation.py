@@ -22,6 +22,7 @@ from abut.decks.overclosure import overclosure_notes, own_laws, softened
 from abut.decks.plane import plane_of, thickness
 from abut.decks.rigid import join, rigid_bodies, with_parts_coupled
 from abut.decks.rubber import of_rubber
+from abut.decks.springs import spring_notes, springs
 from abut.detection import add_surfaces, find_contacts
 from abut.errors import InputError
 from abut.io.deck import read_deck
@@ -50,6 +51,7 @@ from abut.model import (
     Rigid,
     Solid,
     SolveOptions,
+    Spring,
     Support,
     Temperature,
     Term,
@@ -99,7 +101,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
         reasons.add(error)
     plane = plane_of(deck)
     deck = cut(deck)
-    notes = [*deck.notes, *overclosure_notes(deck, soft), *finite_notes(deck)]
+    notes = [*deck.notes, *overclosure_notes(deck, soft), *finite_notes(deck), *spring_notes(deck)]
     notes += [f"{block.code}: {block.type.instead}" for block in deck.blocks if block.type.instead]
     made = pieces(deck)
     deck = with_parts_coupled(deck, made, notes)
@@ -144,6 +146,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
         equations=prescribed.equations,
         rigid=rigid,
         couplings=bound,
+        springs=prescribed.springs,
         plane=plane,
         kinematics="finite" if finite else "small",
         solve=load_steps(deck) if finite else plastic_steps(deck) if yields(deck) else _options(deck),
@@ -171,6 +174,7 @@ class _Prescribed:
     supports: list[Support]
     equations: list[Equation]
     loads: list[Load]
+    springs: list[Spring]
 
 
 def _prescribed(
@@ -181,7 +185,9 @@ def _prescribed(
     thick = 1.0
     with reasons.gathered():
         thick = thickness(deck, plane, notes)
-    result = _Prescribed([], [], [])
+    result = _Prescribed([], [], [], [])
+    with reasons.gathered():
+        result.springs.extend(springs(deck, groups, plane, thick))
     with reasons.gathered():
         bound = bonds(deck, groups, plane)
         result.supports.extend(_supports(bound, groups))
@@ -199,7 +205,7 @@ def _idle(deck: Deck, groups: Groups) -> list[str]:
     """Supports that hold nothing: nodes that do not exist, or that nothing is made of."""
     made = set(groups.used.tolist())
     made |= {n for e in deck.equations for n, _, _ in e.terms}
-    made |= deck.references
+    made |= deck.references.union(*(spring.ends.ravel().tolist() for spring in deck.springs))
     given = set(deck.nodes.tolist())
     notes: dict[str, None] = {}
     for value in (*deck.fixed, *(v for s in deck.steps for v in s.values)):

@@ -171,6 +171,7 @@ class SpringTable(Table):
     along: Law = None
     per_area: bool = False
     weak: bool = False
+    point: list[Number] | None = None
 
 
 class PreloadTable(Table):

@@ -10,6 +10,7 @@ from typing import Any
 from abut import checks
 from abut.errors import InputError
 from abut.mesh.mesh import Mesh
+from abut.model.conditions import vector
 
 ALONG = ("x", "y", "z", "normal", "along")
 Table = tuple[tuple[float, float], ...]
@@ -36,11 +37,13 @@ class Spring:
     normal : float or table, optional
         Along the outward normal of a surface at the outset: a bed that is pressed by positive displacements.
     along : float or table, optional
-        With ``to``: along the line between both ends at the outset, of the lengthening.
+        With ``to`` or ``point``: along the line between both ends at the outset, of the lengthening.
     per_area : bool
         Of a surface: stiffness per area [force/length^3], tables of (displacement, force per area).
     weak : bool
         Only there to keep loose parts in place: the certificate fails where it carries more than a thousandth of the forces.
+    point : (dim,) of float, optional
+        Of a node set, in place of ``to``: a point fixed in space that all its nodes are tied to.
 
     Raises
     ------
@@ -64,6 +67,7 @@ class Spring:
     along: Any = None
     per_area: bool = False
     weak: bool = False
+    point: tuple[float, ...] | None = None
 
     def __post_init__(self) -> None:
         where = f"spring '{self.name}'"
@@ -74,9 +78,15 @@ class Spring:
                 object.__setattr__(self, key, _law(value, f"{where}: {key}"))
         if not self.laws:
             raise InputError(f"{where}: it has no stiffness; give {', '.join(ALONG)}")
-        if self.along is not None and not self.to:
-            raise InputError(f"{where}: along goes with to, the node set at the other end")
-        if self.to and (self.per_area or self.normal is not None):
+        if self.point is not None:
+            object.__setattr__(self, "point", vector(self.point, f"{where}: point"))
+            if self.to or set(self.laws) != {"along"}:
+                raise InputError(f"{where}: point goes with along alone, and not with to; take the others out")
+        if self.along is not None and not self.to and self.point is None:
+            raise InputError(
+                f"{where}: along goes with to, the node set at the other end, or with point, a fixed point there"
+            )
+        if (self.to or self.point is not None) and (self.per_area or self.normal is not None):
             raise InputError(f"{where}: normal and per_area are for beds on the ground; leave to out")
 
     @property
@@ -128,6 +138,10 @@ def check_springs(mesh: Mesh, springs: Sequence[Spring]) -> None:
                 raise InputError(
                     f"{where}.to: '{spring.on}' has {counts[0]} nodes, '{spring.to}' {counts[1]}: give as many"
                 )
+        if spring.point is not None:
+            checks.known(spring.on, mesh.node_sets, f"{where}.on", "node set (point needs one)")
+            if len(spring.point) != mesh.dim:
+                raise InputError(f"{where}.point: expected {mesh.dim} numbers, got {len(spring.point)}")
         if mesh.dim == 2 and spring.z is not None:
             raise InputError(f"{where}.z: the model is 2D; leave z out")
         if mesh.axisymmetric and spring.x is not None and spring.to:

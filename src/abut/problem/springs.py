@@ -106,6 +106,8 @@ def _parts(model: Model, spring: Spring) -> list[SpringRows]:
             if spring.to:
                 others = mesh.nodes_of(spring.to)
                 shapes = _picks(others, len(mesh.points)) - shapes
+            elif spring.point is not None:
+                shapes = -shapes
             directions = _line(model, spring) if key == "along" else directions + np.eye(dim)["xyz".index(key)]
         rows = sum(sp.kron(sp.diags(directions[:, a]) @ shapes, np.eye(dim)[[a]], format="csr") for a in range(dim))
         result.append(SpringRows(spring, rows.tocsr(), share, law))
@@ -118,7 +120,8 @@ def _picks(nodes: Array, count: int) -> Sparse:
 
 def _line(model: Model, spring: Spring) -> Array:
     mesh = model.mesh
-    away = mesh.points[mesh.nodes_of(spring.to)] - mesh.points[mesh.nodes_of(spring.on)]
+    far = mesh.points[mesh.nodes_of(spring.to)] if spring.to else np.array(spring.point)
+    away = far - mesh.points[mesh.nodes_of(spring.on)]
     length = np.linalg.norm(away, axis=1)
     if (length <= ONE * np.ptp(mesh.points, axis=0).max()).any():
         raise InputError(f"spring '{spring.name}': along: both ends are at one point; give x, y or z")

@@ -14,6 +14,7 @@ from abut.io.deck.cards import Card, Line, as_integer, key
 from abut.io.deck.elements import ELEMENTS, FACES, refusal
 from abut.io.deck.reasons import Place, Reasons
 from abut.io.deck.record import Block, Faces, Numbers
+from abut.io.deck.spring_cards import ELEMENTS as SPRINGS
 
 MOST = 10_000_000  # numbers in one GENERATE, or elements of a set, beyond which a deck is wrong
 
@@ -106,14 +107,20 @@ def mesh_cards(cards: Iterable[Card], notes: list[str], reasons: Reasons) -> Mes
             node_sets.add(card.need("NSET"), _present(card, "node", members, there, notes), card.has("UNSORTED"))
         elif card.key == "ELSET":
             members = _set(card, "element", element_sets, element_sets, elements)
-            element_sets.add(card.need("ELSET"), _present(card, "element", members, elements, notes))
+            members = _present(card, "element", members, {*elements, *springs} if springs else elements, notes)
+            element_sets.add(card.need("ELSET"), np.array([e for e in members.tolist() if e in elements], np.int64))
+        elif card.key == SPRINGS:
+            springs.update(number for line in card.lines if (number := as_integer(line.text(0))) is not None)
+            if card.get("ELSET"):
+                element_sets.add(card.need("ELSET"), np.empty(0, np.int64))  # of elements with a volume
         else:
             surface = _surface(card, node_sets, element_sets, elements)
             here = (surface.name.upper(), surface.nodes is not None)
             surfaces[here] = _joined(surfaces[here], surface) if here in surfaces else surface
 
+    springs: set[int] = set()
     there: Collection[int] = ()
-    for keys in (("NODE",), ("ELEMENT",), ("NSET", "ELSET"), ("SURFACE",)):
+    for keys in (("NODE",), ("ELEMENT",), (SPRINGS,), ("NSET", "ELSET"), ("SURFACE",)):
         there = {*nodes, *virtual}
         for card in cards:
             if card.key in keys:

@@ -24,6 +24,7 @@ from abut.io.deck.model_cards import (
 from abut.io.deck.reasons import Reasons
 from abut.io.deck.record import Amplitude, Deck, Prescribed
 from abut.io.deck.repeated import repeated_members, without_repeated
+from abut.io.deck.spring_cards import springs
 from abut.io.deck.step_cards import KIND, amplitudes, initial_temperature, prescribed, split_steps, steps
 from abut.io.deck.supported import NEEDED, opens, sift
 
@@ -75,6 +76,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
         small_sliding=any(card.key == "CONTACTPAIR" and card.has("SMALL SLIDING") for card in cards),
         ignored=sifted.ignored,
         couplings=couplings(cards, mesh, reasons),
+        springs=springs(cards, mesh.numbers, reasons),
     )
     reasons.tell()
     return deck

@@ -218,6 +218,20 @@ class Transform:
 
 
 @dataclass(frozen=True)
+class Spring:
+    """Springs of one type and law. name: the element set; elements (n,) numbers; ends (n, 1 or 2) nodes; directions: of
+    SPRING1 and SPRING2 the one they act in, 1..3; law: a stiffness, or pairs of elongation and force."""
+
+    name: str
+    code: str
+    elements: Numbers
+    ends: Numbers
+    directions: tuple[int, ...]
+    law: float | tuple[tuple[float, float], ...]
+    place: Place
+
+
+@dataclass(frozen=True)
 class CyclicSymmetry:
     """Sectors in the whole turn, the surfaces that meet (slave is master turned by one sector), two points of the axis."""
 
@@ -317,6 +331,7 @@ class Deck:
     ignored: tuple[str, ...]
     small_sliding: bool = False
     couplings: tuple[Coupling, ...] = ()
+    springs: tuple[Spring, ...] = ()
 
     @property
     def references(self) -> frozenset[int]:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from abut.errors import InputError, nearest
+from abut.io.deck import spring_cards
 from abut.io.deck.cards import Card, key
 from abut.io.deck.elements import ELEMENTS, refusal
 from abut.io.deck.reasons import DeckError, Reasons
@@ -54,6 +55,7 @@ READ: dict[str, tuple[str, ...]] = {
     "MODEL CHANGE": ("ADD", "REMOVE", "TYPE"),
     "CLEARANCE": ("MASTER", "SLAVE", "VALUE", "CPSET"),
     "TIE": ("NAME", "POSITION TOLERANCE", "ADJUST", "TYPE", "CYCLIC SYMMETRY", "NO THICKNESS", "NO ROTATION"),
+    "SPRING": ("ELSET", "NONLINEAR"),
     "CYCLIC SYMMETRY MODEL": ("N", "TIE", "ELSET", "NGRAPH"),
     "PRE-TENSION SECTION": ("SURFACE", "NODE"),
     "EQUATION": (),
@@ -145,7 +147,6 @@ REFUSED: dict[str, str] = {
     "RATE DEPENDENT": f"rates are not supported{_MATERIAL}",
     "REFINE MESH": "refinement is not supported; refine the mesh in the preprocessor",
     "SHELL SECTION": "shells are not supported; model the part with solid elements",
-    "SPRING": "springs are not supported; hold the node with *BOUNDARY or load it with *CLOAD",
     "SUBMODEL": "submodels are not supported; give the displacements with *BOUNDARY",
     "SYSTEM": f"nodes in a system of their own are not read{_WRITE}",
     "USER MATERIAL": f"user materials are not supported{_MATERIAL}",
@@ -159,6 +160,7 @@ _PARAMETERS = {  # reasons for parameters that are refused
         "BOUNDARY",
         "FIXED",
     ): "supports frozen in the last state are not supported; give the displacement, or keep the force",
+    ("SPRING", "ORIENTATION"): "axes of its own are not read; give springs along the global axes, or SPRINGA",
     ("TIE", "MULTISTAGE"): "multistage ties are not supported",
     ("COUPLING", "INFLUENCERADIUS"): "a radius is not read; give a surface of the nodes that it holds",
     ("FRICTION", "TAUMAX"): "a largest shear stress is not read; give the coefficient over pressure, line by line",
@@ -183,7 +185,7 @@ RESTART = (
 )
 MAY_BE_OMITTED = {"NLGEOM"}  # parameters that are read, and may be left out all the same
 COUPLINGS = {"COUPLING", "KINEMATIC", "DISTRIBUTING", "KINEMATICCOUPLING", "DISTRIBUTINGCOUPLING"}
-LEFT_OUT = {"FRICTION", "CHANGEFRICTION", *COUPLINGS}  # cards that are read, and may be left out all the same
+LEFT_OUT = {"FRICTION", "CHANGEFRICTION", "SPRING", *COUPLINGS}  # cards that are read, and may be left out all the same
 _READ = {key(name): {key(p) for p in parameters} for name, parameters in READ.items()}
 _QUIET = {key(name) for name in QUIET}
 _REFUSED = {key(name): (name, reason) for name, reason in REFUSED.items()}
@@ -193,7 +195,8 @@ STEP_PROCEDURES = _PROCEDURES | {"STATIC"}
 
 def opens(card: str, parameters: Mapping[str, str | None]) -> bool:
     """Whether the file that INPUT names is read: not for what is refused, whatever stands in it."""
-    supported = card != "ELEMENT" or key(parameters.get("TYPE") or "") in ELEMENTS
+    code = key(parameters.get("TYPE") or "")
+    supported = card != "ELEMENT" or code in ELEMENTS or code in spring_cards.NODES
     return supported and "INPUT" in _READ.get(card, ())
 
 
@@ -241,6 +244,10 @@ def sift(cards: Iterable[Card], reasons: Reasons, ignore: Collection[str] = ()) 
             code = key(card.get("TYPE") or "")
             if card.key == "ELEMENT" and code in POINT_ELEMENTS:  # their node is all they have
                 kept.append(Card("DCOUP", card.title, card.parameters, card.lines, card.place))
+                continue
+            if card.key == "ELEMENT" and code in spring_cards.NODES:
+                if "SPRING" not in asked:
+                    kept.append(replace(card, key=spring_cards.ELEMENTS))
                 continue
             if card.key == "ELEMENT" and code and code not in ELEMENTS:
                 found.setdefault(f"ELEMENT {code}", card.error(refusal(code)))
