@@ -65,8 +65,8 @@ def hollow(pair: Pair, pressure: Array, largest: float) -> float:
     graph = Graph.of_nodes(surface)
     count, along = _planes(pair, len(graph.rim))
     _, mirrored = _mirrored(pair, graph)
-    edge = graph.rim & ~(mirrored & ((count > 1) | along.any(axis=1)))  # its pressure may have no limit
-    closed = (pressure > CLOSED * largest) & ~edge
+    free = graph.rim & ~mirrored  # the body's own edge, whose pressure may have no limit, to where it meets a plane
+    closed = (pressure > CLOSED * largest) & ~free & ~(mirrored & graph.any_of(free))
     within = mirrored & closed & graph.all_of(closed)
     if not within.any():
         return 0.0
