@@ -1,5 +1,5 @@
-"""Whether a plane on which a body ends continues it as its mirror image: its material must be symmetric about it, theory
-(A4)."""
+"""Whether a plane on which a body ends continues it as its mirror image: its material must be symmetric about it,
+theory (A4)."""
 
 from __future__ import annotations
 

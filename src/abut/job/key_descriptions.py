@@ -331,7 +331,8 @@ MEANINGS: dict[str, dict[str, str]] = {
         "line": "two points, start and end [length]",
         "on": "name of the node set or surface whose nodes are read",
         "points": "how many points on the line, both ends among them; left out: 50",
-        "of": "what to read; left out: all there is, pressure and gap only on surfaces of contacts",
+        "of": "what to read; left out: all there is, plastic strains only where a body may yield, pressure and gap only on "
+        "surfaces of contacts",
         "contact": "name of the contact whose pressure and gap are read; left out: the one that the probe lies on",
         "body": "name of the body that is read where points lie on several; left out: the first in the mesh",
     },

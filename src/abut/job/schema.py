@@ -17,6 +17,7 @@ from abut.model.contact import GEOMETRIES, KINDS, LAWS, METHODS, PRESSURES, RULE
 from abut.model.coupling import KINDS as COUPLINGS
 from abut.model.coupling import Coupling
 from abut.model.kinematics import KINEMATICS
+from abut.model.probe import QUANTITIES
 from abut.model.solve_options import LINEAR, SolveOptions
 from abut.output.options import FIELDS, FORMATS, STEPS, USUAL, VTU
 from abut.types import Json
@@ -317,7 +318,7 @@ class ProbeTable(Table):
     line: list[list[Number]] | None = None
     on: str | None = None
     points: int | None = None
-    of: list[Literal["displacement", "stress", "von-mises", "pressure", "gap"]] | None = None
+    of: list[Annotated[str, OneOf(QUANTITIES)]] | None = None
     contact: str | None = None
     body: str | None = None
 

@@ -37,8 +37,8 @@ class Directional(OwnMaterial):
         return self._told(turn, _applied(self.stiffness, local), self.stiffness, history)
 
     def evaluate_finite(self, strain: Array, history: Array) -> Evaluated:
-        """As in ``FiniteMaterial``: the law of Saint Venant and Kirchhoff; heat stretches along the local directions, theory
-        (A3)."""
+        """As in ``FiniteMaterial``: the law of Saint Venant and Kirchhoff; heat stretches along the local directions,
+        theory (A3)."""
         if self.swelling is None:
             return self.evaluate(strain, history)
         turn, stretch = turned(self.frame), 1.0 + self.swelling

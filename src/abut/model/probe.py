@@ -10,7 +10,8 @@ from abut import checks
 from abut.errors import InputError, nearest
 from abut.mesh.mesh import Mesh
 
-IN_BODIES = ("displacement", "stress", "von-mises")
+YIELDED = ("plastic-strain", "equivalent-plastic-strain")  # where a body may yield
+IN_BODIES = ("displacement", "stress", "von-mises", *YIELDED)
 ON_CONTACTS = ("pressure", "gap")
 QUANTITIES = (*IN_BODIES, *ON_CONTACTS)
 POINTS = 50  # along a line, where the user does not say
@@ -36,7 +37,8 @@ class Probe:
     points : int, optional
         Of a line: in equal distances, both ends among them; 50 where left out.
     of : sequence of str, optional
-        "displacement", "stress", "von-mises", "pressure", "gap"; left out: all that exist there, pressure and gap only
+        "displacement", "stress", "von-mises", "plastic-strain", "equivalent-plastic-strain", "pressure", "gap"; left out:
+        all that exist there, plastic strains only where a body of the model may yield, pressure and gap only
         where the place lies on a surface of a contact.
     contact : str, optional
         Whose pressure and gap, where more than one is there.

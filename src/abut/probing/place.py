@@ -12,10 +12,11 @@ from scipy.sparse import csr_matrix
 
 from abut.contact.sides import words
 from abut.errors import InputError
+from abut.materials.material import history_fields
 from abut.mesh.exterior import outside_of_body
 from abut.mesh.mesh import Mesh
 from abut.model import Contact, Model
-from abut.model.probe import IN_BODIES, ON_CONTACTS, POINTS, QUANTITIES, Probe
+from abut.model.probe import IN_BODIES, ON_CONTACTS, POINTS, QUANTITIES, YIELDED, Probe
 from abut.probing.cells import NEAR, Boxes, boxes, locate
 from abut.probing.closest_points import feet
 from abut.probing.sides import CONTACTOR, TARGET, Side, choose
@@ -109,9 +110,14 @@ def _points(
 
 
 def _quantities(model: Model, probe: Probe, side: Side | None) -> tuple[str, ...]:
+    known = {name for material in model.materials.values() for name in history_fields(material)}
+    absent = [name for name in YIELDED if name.replace("-", "_") not in known]
     if probe.of is None:
         there = () if side is None else ON_CONTACTS if side.role == CONTACTOR else ON_CONTACTS[:1]
-        return tuple(quantity for quantity in QUANTITIES if quantity in (*IN_BODIES, *there))
+        return tuple(name for name in QUANTITIES if name in (*IN_BODIES, *there) and name not in absent)
+    for name in probe.of:
+        if name in absent:
+            raise InputError(f"probe '{probe.name}': no body of the model may yield; take {name} out of its 'of'")
     if "gap" in probe.of and side is not None and side.role != CONTACTOR:
         contact = model.contacts[side.contact]
         raise InputError(

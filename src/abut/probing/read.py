@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.materials.invariants import von_mises
+from abut.model.probe import YIELDED
 from abut.probing.place import OnSurface, Place
 from abut.probing.sides import CONTACTOR
 from abut.solution import ContactResult, ProbeResult, Step
@@ -23,6 +24,11 @@ def read(place: Place, step: Step) -> ProbeResult:
             "stress": stress,
             "von-mises": von_mises(stress),
         }
+        for name in YIELDED:
+            if name in place.of:
+                at_points = step.remembered[name.replace("-", "_")]
+                every[name] = np.asarray(place.weights @ at_points.reshape(len(step.displacement), -1))
+                every[name] = every[name].ravel() if every[name].shape[1] == 1 else every[name]
         values |= {name.replace("-", "_"): value for name, value in every.items() if name in place.of}
     if place.surface is not None:
         contact = step.contacts[place.surface.contact]

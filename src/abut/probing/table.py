@@ -11,7 +11,8 @@ STRESSES = ("xx", "yy", "zz", "xy", "yz", "zx")
 
 
 def columns(result: ProbeResult) -> dict[str, NDArray[np.float64]]:
-    """Each component by its name, (n,): displacement_x ..., stress_xx ... stress_zx, von_mises, pressure, gap."""
+    """Each component by its name, (n,): displacement_x ..., stress_xx ... stress_zx, von_mises, plastic_strain_xx
+    ..., equivalent_plastic_strain, pressure, gap."""
     table: dict[str, NDArray[np.float64]] = {}
     for name, values in result.values.items():
         if values.ndim == 1:

@@ -13,12 +13,14 @@ from abut.report.describe import Table
 from abut.solution import ProbeResult, Solution
 
 UNITS = {"displacement": "length", "stress": "force/length²", "pressure": "force/length²", "gap": "length"}
+UNITS |= dict.fromkeys(("plastic_strain", "equivalent_plastic_strain", "equivalent plastic strain"), "1")
 CHARTS = (  # quantities of one chart: its title, its quantities
     ("displacement", ("displacement",)),
     ("stress", ("stress", "von_mises")),
+    ("plastic strain", ("plastic_strain", "equivalent_plastic_strain")),
     ("pressure", ("pressure", "gap")),
 )
-PLANE = ("stress_yz", "stress_zx")  # zero in two dimensions
+PLANE = ("stress_yz", "stress_zx", "plastic_strain_yz", "plastic_strain_zx")  # zero in two dimensions
 OVER_TIME = "time (share of the load, where no amplitude says otherwise)"
 NO_GAP = 1e-9  # of a gap, over the length of the line
 PEAK = "value farthest from zero"
