@@ -11,6 +11,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.analysis.surface_slopes import SurfacePoints, surface_stress
+from abut.bodies.bearing import bearing_direction, bearing_pressure
 from abut.bodies.mirror import mirrors
 from abut.bodies.recovery import Equations
 from abut.bodies.solids import TemperatureChange
@@ -122,6 +123,10 @@ def _add_load(model: Model, skin: _Skin, load: Load, factor: float) -> None:
             skin.pressure[at] += values
             return
         traction = -values[..., None] * before / np.maximum(np.linalg.norm(before, axis=2, keepdims=True), 1e-300)
+    elif isinstance(load, Force) and load.bearing:
+        normals = before / np.maximum(np.linalg.norm(before, axis=2, keepdims=True), 1e-300)
+        direction = bearing_direction(surface, np.array(load.value), f"force on '{load.on}'")
+        traction = -factor * bearing_pressure(normals, direction)[..., None] * normals
     elif isinstance(load, Force):
         traction = np.broadcast_to(factor * np.array(load.value) / full_moments(surface, 0).sum(), x.shape)
     else:

@@ -193,6 +193,8 @@ MEANINGS: dict[str, dict[str, str]] = {
         "kind": "total force, spread evenly over a surface, or at the reference of a rigid body or coupling",
         "on": "name of the surface, rigid body or coupling",
         "value": "vector; plane models: per unit thickness, axisymmetric: of the full circumference [force]",
+        "bearing": "of a surface such as a bore: not evenly, but as a pin brings it, a pressure on the half that the force "
+        "presses on, over the cosine of the angle",
     },
     "MomentTable": {
         "kind": "moment on a rigid body or coupling, about axes that keep their direction",

@@ -230,6 +230,7 @@ class TractionTable(VectorTable):
 
 class ForceTable(VectorTable):
     kind: Literal["force"]
+    bearing: bool = False
 
 
 class MomentTable(VectorTable):

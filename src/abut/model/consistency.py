@@ -62,6 +62,12 @@ def check_loads(mesh: Mesh, loads: Sequence[Load], rigid: Collection[str], coupl
         elif isinstance(load, Force):
             known = [*mesh.surfaces, *rigid, *couplings]
             checks.known(load.on, known, f"loads[{i}].on", "surface, rigid body or coupling")
+            if load.bearing and load.on not in mesh.surfaces:
+                raise InputError(f"loads[{i}].bearing: '{load.on}' is no surface; leave bearing out")
+            if load.bearing and mesh.axisymmetric:
+                raise InputError(
+                    f"loads[{i}].bearing: bearing loads are not axisymmetric; take a pressure, or a 3D model"
+                )
         else:
             _check_place(mesh, load, f"loads[{i}].on")
             if isinstance(load, Temperature) and load.on in rigid and load.on not in mesh.node_sets:

@@ -106,6 +106,9 @@ class Force:
         Force (2D: per unit thickness).
     amplitude : Amplitude, optional
         Factor over time; the ramp where left out.
+    bearing : bool
+        Of a surface such as a bore: not evenly, but as a pin brings it, a pressure where the force presses against the
+        surface, which falls off with the cosine of the angle from its middle, theory (F17).
 
     Raises
     ------
@@ -122,8 +125,11 @@ class Force:
     on: str
     value: tuple[float, ...]
     amplitude: History = None
+    bearing: bool = False
 
     def __post_init__(self) -> None:
+        if not isinstance(self.bearing, bool):
+            raise InputError(f"force on '{self.on}': bearing: expected true or false, got {self.bearing!r}")
         object.__setattr__(self, "value", vector(self.value, f"force on '{self.on}': value"))
         check_amplitude(self.amplitude, f"force on '{self.on}'")
 

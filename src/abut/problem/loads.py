@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.bodies.assemble import thermal_load
+from abut.bodies.bearing import bearing_load
 from abut.bodies.loads import body_load, force_load, pressure_load, traction_load
 from abut.bodies.solids import TemperatureChange
 from abut.fields import evaluate
@@ -133,6 +134,8 @@ def _forces(model: Model, load: Load) -> NDArray[np.float64]:
         return pressure_load(mesh.surface(load.on), load.value, f"pressure on '{load.on}': value")
     if isinstance(load, Traction):
         return traction_load(mesh.surface(load.on), load.value, f"traction on '{load.on}': value")
+    if isinstance(load, Force) and load.bearing:
+        return bearing_load(mesh.surface(load.on), np.array(load.value), f"loads[{model.loads.index(load)}].bearing")
     if isinstance(load, Force):
         return force_load(mesh.surface(load.on), np.array(load.value))
     if isinstance(load, NodalForce):
