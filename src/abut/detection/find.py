@@ -115,10 +115,11 @@ def find_contacts(
     >>> contacts = [found.contact()]  # of a Model of this mesh
     """
     checks.instance(mesh, Mesh, "find_contacts", "a mesh (abut.Mesh)")
-    checks.listed(solids, "find_contacts: solids")
+    solids = checks.records(solids, "find_contacts: solids", (Solid,))
     if reach is not None:
         checks.positive(reach, "reach")
-    for name in () if bodies is None else checks.listed(bodies, "find_contacts: bodies", "names"):
+    bodies = None if bodies is None else checks.listed(bodies, "find_contacts: bodies", "names")
+    for name in bodies or ():
         if name not in mesh.bodies:
             raise InputError(f"bodies: no body named {name!r} in the mesh{nearest(name, mesh.bodies)}")
     names = [name for name in mesh.bodies if bodies is None or name in bodies]
