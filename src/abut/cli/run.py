@@ -55,6 +55,7 @@ def add_run(commands: Any) -> None:
     run.add_argument(
         "--restart", action="store_true", help="continue after the last step that an earlier run has written"
     )
+    run.add_argument("--frd", action="store_true", help="write fields.frd as well, for CalculiX GraphiX and PrePoMax")
     run.add_argument("--json", action="store_true", help="print summary.json instead of the table")
     run.add_argument("--quiet", action="store_true", help="print errors only")
     run.add_argument("--debug", action="store_true", help="print the traceback of an internal error")
@@ -157,7 +158,8 @@ def _solve(
     directory = arguments.output or job.directory
     model = restart.description(job.model)
     fields = write_fields if team is None or team.size == 1 else Pieces(team)
-    with Stream(directory, model, arguments.restart, fields, progress, job.output) as stream:
+    output = job.output.with_frd() if arguments.frd else job.output
+    with Stream(directory, model, arguments.restart, fields, progress, output) as stream:
         before = stream.resumed
         if before:
             progress(restart.last(before))

@@ -317,10 +317,11 @@ MEANINGS: dict[str, dict[str, str]] = {
     },
     "OutputTable": {
         "directory": "folder of the results, beside the job file",
-        "steps": "steps with VTU files: all, last, n for every n-th, or a list of numbers; the last one always has them. "
+        "steps": "steps with result files: all, last, n for every n-th, or a list of numbers; the last one always has them. "
         "Tables, summary and report have every step",
-        "fields": "what VTU files hold: fields of the bodies, and contact for the files of contact surfaces; "
+        "fields": "what result files hold: fields of the bodies, and contact for the files of contact surfaces; "
         "principal-stress is left out unless it is named",
+        "formats": "vtu for ParaView; frd for CalculiX GraphiX and PrePoMax: fields.frd, written at the end of the run",
     },
 }
 

@@ -19,7 +19,7 @@ from abut.model.coupling import KINDS as COUPLINGS
 from abut.model.coupling import Coupling
 from abut.model.kinematics import KINEMATICS
 from abut.model.solve_options import LINEAR, SolveOptions
-from abut.output.options import FIELDS, STEPS, USUAL
+from abut.output.options import FIELDS, FORMATS, STEPS, USUAL, VTU
 from abut.types import Json
 
 Points = Annotated[
@@ -344,6 +344,7 @@ class OutputTable(Table):
     directory: str = "results"
     steps: int | list[int] | Annotated[str, OneOf(STEPS)] = "all"
     fields: list[Annotated[str, OneOf(FIELDS)]] = list(USUAL)
+    formats: list[Annotated[str, OneOf(FORMATS)]] = [VTU]
 
 
 class JobFile(Table):

@@ -1,4 +1,4 @@
-"""What of a solution is written as VTU files: of which steps, and which fields."""
+"""What of a solution is written to result files: of which steps, which fields, in which formats."""
 
 from __future__ import annotations
 
@@ -25,11 +25,13 @@ CONTACT = "contact"  # the files of contact surfaces
 FIELDS = (*ARRAYS, MATERIAL, CONTACT)
 USUAL = ("displacement", "stress", "von-mises", "stress-error", MATERIAL, CONTACT)
 STEPS = ("all", "last")
+VTU, FRD = "vtu", "frd"
+FORMATS = (VTU, FRD)
 
 
 @dataclass(frozen=True)
 class Output:
-    """Which VTU files a run writes; tables, summary and report have every step in any case.
+    """Which result files a run writes; tables, summary and report have every step in any case.
 
     Parameters
     ----------
@@ -38,6 +40,9 @@ class Output:
     fields : sequence of str
         Names out of ``abut.output.options.FIELDS``; without any of the bodies' there is no ``fields.pvd``, without
         "contact" no ``contact_*.pvd``.
+    formats : sequence of str
+        "vtu" for ParaView, "frd" for CalculiX GraphiX and PrePoMax: ``fields.frd``, all of these steps in one file, which is
+        written at the end of the run.
 
     Raises
     ------
@@ -53,6 +58,7 @@ class Output:
 
     steps: str | int | Sequence[int] = "all"
     fields: Sequence[str] = USUAL
+    formats: Sequence[str] = (VTU,)
 
     def __post_init__(self) -> None:
         if isinstance(self.steps, str):
@@ -64,10 +70,12 @@ class Output:
                     f'output.steps: expected "all", "last", a number > 0 or a list of such, got {self.steps!r}; 10 means '
                     "every tenth step, [10] the tenth"
                 )
-        if isinstance(self.fields, str):
-            raise InputError(f"output.fields: expected a list of names, got {self.fields!r}; write [{self.fields!r}]")
-        for name in self.fields:
-            checks.choice(name, "output.fields", FIELDS)
+        for key, known in (("fields", FIELDS), ("formats", FORMATS)):
+            given = getattr(self, key)
+            if isinstance(given, str):
+                raise InputError(f"output.{key}: expected a list of names, got {given!r}; write [{given!r}]")
+            for name in given:
+                checks.choice(name, f"output.{key}", known)
 
     def wants(self, number: int, last: bool = False) -> bool:
         """Whether files of a step are written; last: it is the last one."""
@@ -79,13 +87,22 @@ class Output:
 
     @property
     def bodies(self) -> bool:
-        """Whether the fields of bodies are written."""
-        return any(name in self.fields for name in (*ARRAYS, MATERIAL))
+        """Whether VTU files of bodies are written."""
+        return VTU in self.formats and any(name in self.fields for name in (*ARRAYS, MATERIAL))
 
     @property
     def contacts(self) -> bool:
-        """Whether contact surfaces are."""
-        return CONTACT in self.fields
+        """Whether those of contact surfaces are."""
+        return VTU in self.formats and CONTACT in self.fields
+
+    @property
+    def frd(self) -> bool:
+        """Whether ``fields.frd`` is."""
+        return FRD in self.formats
+
+    def with_frd(self) -> Output:
+        """The same with ``fields.frd``."""
+        return self if self.frd else replace(self, formats=(*self.formats, FRD))
 
     def of_bodies(self, grid: Grid) -> Grid:
         """A grid of bodies with the arrays that are asked for, and the body's number."""

@@ -18,7 +18,7 @@ from abut.io.atomic import write_text
 from abut.io.names import file_labels
 from abut.io.versions import versions
 from abut.io.vtu import write_vtu
-from abut.output import forces, probes
+from abut.output import forces, frd, probes
 from abut.output.contact_rows import (
     OF_CONTACT,
     contact_summary,
@@ -51,7 +51,7 @@ def write(
     """Write everything about a solution to a directory, which is created if needed.
 
     report.html, summary.json, history.csv, forces.csv, run.jsonl; fields.pvd with a VTU file a step; contact_NAME.pvd
-    likewise for each contact; probe_NAME.csv for each probe.
+    likewise for each contact; probe_NAME.csv for each probe; fields.frd where ``output`` asks for it.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def write(
     fields : callable, optional
         What writes the fields of a step.
     output : Output
-        Which steps and fields have VTU files.
+        Which steps and fields have VTU files, and whether there is ``fields.frd``.
 
     Returns
     -------
@@ -114,7 +114,10 @@ def write_held(
     write_steps(folder, solution, solution.steps if steps is None else steps, fields, output)
     write_index(folder, solution, output)
     shown = [step for step in solution.steps if _wanted(solution, step, output, True)]
-    remove_others(folder, len(solution.steps), [*INDEX, *_files(solution, shown, output)])
+    if output.frd:
+        frd.write(folder, solution, shown, output)
+    index = [name for name in INDEX if output.frd or name != frd.FILE]
+    remove_others(folder, len(solution.steps), [*index, *_files(solution, shown, output)])
     write_report(solution, folder / "report.html", origin or Origin(folder.absolute().name))
     return folder
 
