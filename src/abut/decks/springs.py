@@ -33,7 +33,8 @@ class _Scene:
 def spring_notes(deck: Deck) -> list[str]:
     """What is solved otherwise than in CalculiX."""
     return [
-        f"{spring.place}: *SPRING: NONLINEAR without NLGEOM follows its table; CalculiX's results are those of the slope at no elongation"
+        f"{spring.place}: *SPRING: NONLINEAR without NLGEOM follows its table; CalculiX's results are "
+        "those of the slope at no elongation"
         for spring in deck.springs
         if not isinstance(spring.law, float) and not any(step.finite for step in deck.steps)
     ]
