@@ -69,6 +69,9 @@ VALUES = {  # of options that take one; {} is the folder of the test
     ("verify", "--output"): "{}/swap",
     ("infsup", "--contact"): "c", ("infsup", "--levels"): "2",
     ("schema", "--output"): "{}/schema.json",
+    ("fit", "--uniaxial"): "{}/tension.csv", ("fit", "--planar"): "{}/tension.csv", ("fit", "--biaxial"): "{}/tension.csv",
+    ("fit", "--terms"): "2", ("fit", "--bulk"): "100", ("fit", "--poisson"): "0.499", ("fit", "--name"): "rubber",
+    ("fit", "--plot"): "{}/fit.html",
 }  # fmt: skip
 SUBJECTS = {  # of each subcommand
     "run": (["{}/job.toml"], ["{}/deck.inp"]),
@@ -77,7 +80,10 @@ SUBJECTS = {  # of each subcommand
     "verify": ([], ["one"], ["none"]),
     "infsup": (["{}/job.toml"], ["{}/deck.inp"]),
     "schema": ([],),
+    "fit": (["yeoh"], ["ogden"]),
 }
+
+AT_ONCE = {"fit": 2}  # options of these many, which say something each on their own
 
 
 def commands() -> dict[str, argparse.ArgumentParser]:
@@ -94,7 +100,7 @@ def cases() -> list[tuple[str, int, tuple[str, ...]]]:
         (command, subject, tuple(own.option_strings[-1] for own in chosen))
         for command, subjects in SUBJECTS.items()
         for subject in range(len(subjects))
-        for count in range(len(options(command)) + 1)
+        for count in range(AT_ONCE.get(command, len(options(command))) + 1)
         for chosen in combinations(options(command), count)
     ]
 
@@ -110,6 +116,9 @@ def _benchmark(name: str, error: float) -> Benchmark:
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "job.toml").write_text(JOB)
+    (tmp_path / "tension.csv").write_text(
+        "stretch,stress\n" + "".join(f"{s},{s - s**-2}\n" for s in np.linspace(0.8, 2, 9))
+    )
     (tmp_path / "petsc.toml").write_text(SOLID)
     (tmp_path / "auto.toml").write_text(JOB.split('name = "c"')[0] + "auto = true\n")
     (tmp_path / "loose.toml").write_text(JOB.replace('on = "upper.top"\nx = 0', 'on = "upper.top"'))

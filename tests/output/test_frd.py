@@ -1,4 +1,4 @@
-"""fields.frd: what CalculiX GraphiX and PrePoMax read, with the numbers of the VTU files."""
+"""fields.frd: what CalculiX GraphiX reads, with the numbers of the VTU files."""
 
 from __future__ import annotations
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import abut
@@ -46,6 +47,7 @@ def kept(record: object) -> object:
 
 VALID: dict[str, tuple[dict[str, Any], Callable[[Any], object]]] = {  # arguments, and what uses the record
     "Amplitude": ({"points": [(0, 0), (1, 1)]}, lambda a: within("loads")(abut.Pressure("b.right", 1.0, amplitude=a))),
+    "Anisotropic": ({"constants": np.eye(6)[np.triu_indices(6)]}, kept),
     "ArrudaBoyce": ({"bulk": 100.0, "shear": 1.0, "locking": 3.0}, kept),
     "Axes": ({"kind": "cylindrical"}, lambda axes: within("supports")(abut.Support("a.left", x=0, axes=axes))),
     "BodyForce": ({"value": (1.0, 0.0)}, within("loads")),
@@ -65,7 +67,9 @@ VALID: dict[str, tuple[dict[str, Any], Callable[[Any], object]]] = {  # argument
     "NeoHooke": ({"young": 1.0, "poisson": 0.3}, kept),
     "NodalForce": ({"on": "b.right", "value": (1.0, 0.0)}, within("loads")),
     "Ogden": ({"bulk": 100.0, "terms": [(1.0, 2.0)]}, kept),
+    "Orthotropic": ({"young": [1.0, 2.0, 3.0], "poisson": [0.1, 0.1, 0.1], "shear": [1.0, 1.0, 1.0]}, kept),
     "Output": ({}, kept),
+    "OverTemperature": ({"temperatures": [0.0, 1.0], "materials": [STEEL, STEEL], "initial_temperature": 0.0}, kept),
     "Plastic": ({"young": 1.0, "poisson": 0.3, "yield_stress": 1.0}, kept),
     "Preload": ({"name": "p", "surface": "b.left", "force": 1.0}, within("preloads")),
     "Pressure": ({"on": "b.right", "value": 1.0}, within("loads")),

@@ -55,7 +55,7 @@ def add_run(commands: Any) -> None:
     run.add_argument(
         "--restart", action="store_true", help="continue after the last step that an earlier run has written"
     )
-    run.add_argument("--frd", action="store_true", help="write fields.frd as well, for CalculiX GraphiX and PrePoMax")
+    run.add_argument("--frd", action="store_true", help="write fields.frd as well, for CalculiX GraphiX")
     run.add_argument("--json", action="store_true", help="print summary.json instead of the table")
     run.add_argument("--quiet", action="store_true", help="print errors only")
     run.add_argument("--debug", action="store_true", help="print the traceback of an internal error")

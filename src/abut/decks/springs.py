@@ -33,7 +33,8 @@ class _Scene:
 def spring_notes(deck: Deck) -> list[str]:
     """What is solved otherwise than in CalculiX."""
     return [
-        f"{spring.place}: *SPRING: NONLINEAR without NLGEOM follows its table; CalculiX takes the slope at no elongation"
+        f"{spring.place}: *SPRING: NONLINEAR without NLGEOM follows its table; CalculiX's results are "
+        "those of the slope at no elongation"
         for spring in deck.springs
         if not isinstance(spring.law, float) and not any(step.finite for step in deck.steps)
     ]
@@ -82,8 +83,8 @@ def _check(deck: Deck, spring: Spring, plane: str | None) -> None:
         if spring.directions and any(node in transform.nodes for transform in deck.transforms):
             raise DeckError(
                 spring.place,
-                f"*SPRING: node {node} has axes of its own (*TRANSFORM), which Abaqus takes for its springs, too, and "
-                "CalculiX does not; take it out of *TRANSFORM",
+                f"*SPRING: node {node} has axes of its own (*TRANSFORM), which springs do not take in every "
+                "code (CalculiX does not take them); take it out of *TRANSFORM",
             )
 
 
@@ -171,8 +172,7 @@ def _name(scene: _Scene, spring: Spring, members: Sequence[tuple[int, int, int]]
 
 
 def _law(scene: _Scene, spring: Spring, count: int) -> Mapping[str, Any]:
-    """Of all springs together, per unit thickness; beyond a table's ends the force is constant, as in CalculiX and
-    Abaqus."""
+    """Of all springs together, per unit thickness; beyond a table's ends the force is constant, as in CalculiX."""
     key = AXES[spring.directions[0] - 1] if spring.directions else "along"
     times = count / scene.thickness
     if isinstance(spring.law, float):

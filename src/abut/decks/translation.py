@@ -120,8 +120,6 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     references = dict(zip([*moving, *(coupling.name for coupling in bound)], reference_nodes(deck)))
     prescribed = _prescribed(deck, groups, parts, plane, references, notes, reasons)
     reasons.tell()
-    if deck.quiet:
-        notes.append(f"cards without effect on the result: {', '.join(deck.quiet)}")
     mesh = build(Mesh, groups.raw(), deck.path)
     notes += mesh.notes
     mesh, contacts = adjusted(mesh, deck, groups, contacts, notes)
@@ -202,7 +200,7 @@ def _prescribed(
 
 
 def _idle(deck: Deck, groups: Groups) -> list[str]:
-    """Supports that hold nothing: nodes that do not exist, or that nothing is made of."""
+    """Supports that hold nothing: nodes that do not exist, or that nothing is made of; cards without effect."""
     made = set(groups.used.tolist())
     made |= {n for e in deck.equations for n, _, _ in e.terms}
     made |= deck.references.union(*(spring.ends.ravel().tolist() for spring in deck.springs))
@@ -213,7 +211,7 @@ def _idle(deck: Deck, groups: Groups) -> list[str]:
             node = int(value.numbers[0])
             what = "belongs to no element and no equation" if node in given else "does not exist"
             notes[f"{value.place}: *BOUNDARY: node {node} {what}: the line holds nothing"] = None
-    return list(notes)
+    return [*notes, *([f"cards without effect on the result: {', '.join(deck.quiet)}"] if deck.quiet else [])]
 
 
 def _solids(deck: Deck, parts: Mapping[str, Piece], plane: str | None, reasons: Reasons) -> list[Solid]:

@@ -1,4 +1,4 @@
-"""Result files of CalculiX (.frd), as text: the format that CalculiX GraphiX, PrePoMax and converters to VTK read.
+"""Result files of CalculiX (.frd), as text: the format that CalculiX GraphiX and converters to VTK read.
 
 Columns and order of nodes are those of CalculiX GraphiX's manual, "Result Format", and of files that CalculiX 2.20 writes:
 numbers have 6 digits, node and element numbers begin at 1, quadratic cells list the edges between bottom and top before

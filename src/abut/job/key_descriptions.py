@@ -355,7 +355,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "Tables, summary and report have every step",
         "fields": "what result files hold: fields of the bodies, and contact for the files of contact surfaces; "
         "principal-stress is left out unless it is named",
-        "formats": "vtu for ParaView; frd for CalculiX GraphiX and PrePoMax: fields.frd, written at the end of the run",
+        "formats": "vtu for ParaView; frd for CalculiX GraphiX: fields.frd, written at the end of the run",
     },
 }
 

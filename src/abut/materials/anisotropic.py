@@ -191,7 +191,9 @@ class Anisotropic(LocalElastic):
     constants: Sequence[float]
 
     def __post_init__(self) -> None:
-        values = tuple(checks.finite(value, "constants") for value in self.constants)
+        values = tuple(
+            checks.finite(value, "constants") for value in checks.listed(self.constants, "constants", "numbers")
+        )
         if len(values) != 21:
             raise InputError(f"constants: expected 21 numbers, the upper triangle column by column, got {len(values)}")
         object.__setattr__(self, "constants", values)

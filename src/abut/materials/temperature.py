@@ -61,9 +61,12 @@ class OverTemperature(OwnMaterial):
     zero: float | None = None
 
     def __post_init__(self) -> None:
-        given = tuple(checks.finite(value, "temperatures") for value in self.temperatures)
+        given = tuple(
+            checks.finite(value, "temperatures")
+            for value in checks.listed(self.temperatures, "temperatures", "numbers")
+        )
         object.__setattr__(self, "temperatures", given)
-        object.__setattr__(self, "materials", tuple(self.materials))
+        object.__setattr__(self, "materials", checks.listed(self.materials, "materials"))
         checks.finite(self.initial_temperature, "initial_temperature")
         if self.zero is not None:
             checks.finite(self.zero, "zero")

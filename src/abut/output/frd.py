@@ -1,4 +1,4 @@
-"""Results as CalculiX writes them, fields.frd, for CalculiX GraphiX, PrePoMax and other readers of that format."""
+"""Results as CalculiX writes them, fields.frd, for CalculiX GraphiX and other readers of that format."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ class Output:
         Names out of ``abut.output.options.FIELDS``; without any of the bodies' there is no ``fields.pvd``, without
         "contact" no ``contact_*.pvd``.
     formats : sequence of str
-        "vtu" for ParaView, "frd" for CalculiX GraphiX and PrePoMax: ``fields.frd``, all of these steps in one file, which is
+        "vtu" for ParaView, "frd" for CalculiX GraphiX: ``fields.frd``, all of these steps in one file, which is
         written at the end of the run.
 
     Raises

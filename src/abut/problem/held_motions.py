@@ -10,6 +10,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.bodies.rigid_modes import FREE, RigidModes, motions
+from abut.dofs import dofs_at, n_dofs
 from abut.mesh.mesh import Mesh
 from abut.model import Model
 from abut.problem.backend import Serial
@@ -98,8 +99,8 @@ class HeldMotions:
     def _at(self, nodes: NDArray[np.int64], values: Array) -> Sparse:
         """A row (1, dim n_points) with the values (dim n,) of some nodes."""
         dim = self.model.dim
-        columns = (dim * nodes[:, None] + np.arange(dim)).ravel()
-        shape = (1, dim * len(self.model.mesh.points))
+        columns = dofs_at(nodes, dim).ravel()
+        shape = (1, n_dofs(len(self.model.mesh.points), dim))
         return sp.csr_matrix((values, (np.zeros(len(columns), np.int64), columns)), shape=shape)
 
     def _gone(self, points: Array, moved: Array, field: Array, x: Array) -> Array:
