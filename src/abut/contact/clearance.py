@@ -96,7 +96,8 @@ def of_corners(contactor: Surface, target: Surface, coupling: Coupling) -> Coupl
     On each facet the gap is fitted by the functions of ``coupling``, of degree 1 or 2, in the mean; its values at the
     corners take the gap's place. Of a gap with a step the fit undershoots, by up to a third of the step, and is kept
     within the gaps that are there; slivers keep the gap as it is. Where facets of first order bulge the fit is of second
-    order too, from the coupling's integration points."""
+    order too, from the coupling's integration points. coupling: with gap samples, without which nothing is fitted, and
+    where facets bulge with its points (``CouplingOptions``)."""
     n_rows = coupling.contactor_part.shape[0]
     result = coupling if coupling.degree == 1 else _restricted(contactor, coupling)
     if coupling.gap_samples is None or not len(coupling.gap_samples.gap):
