@@ -26,6 +26,7 @@ from skfem.helpers import ddot, eye, sym_grad, trace
 import abut
 from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.bulge import with_bulge
+from abut.contact.clearance import of_corners
 from abut.contact.common_normals import common_normals
 from abut.contact.coupling import CouplingOptions, couple, default_reach
 from abut.contact.geometry import nodal_normals
@@ -89,7 +90,8 @@ def solve() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     # pressures act along the normals between both sides: half way, as both bodies yield alike
     sides, reach = (nodal_normals(contactor), nodal_normals(target)), default_reach(contactor, target)
     normals = common_normals(contactor, target, *sides, share=0.5, reach=reach, couple=couple)
-    coupling = couple(contactor, target, degree, CouplingOptions(normals=normals))
+    options = CouplingOptions(normals=normals, keep_points=True, keep_gap_samples=True)
+    coupling = of_corners(contactor, target, couple(contactor, target, degree, options))  # gaps of dual functions
     space = pressure_space(name, contactor, coupling)
     operator = (space.transfer.T @ coupling.operator).tocsr()  # B
     opening = space.transfer.T @ coupling.gap  # g

@@ -125,20 +125,64 @@ def test_flat_surfaces_have_none(kind: str) -> None:
     assert with_bulge(flat).bulge is None
 
 
-def test_a_flat_beside_a_fillet_stays_flat() -> None:
-    """The line that goes over into an arc of 6 facets has no bulge; the facets inside the arc have theirs."""
+def fillet(facets: int, along: int) -> Callable[[Array], list[Array]]:
+    """A line of length 1 and ``along`` facets that goes over into a quarter of a circle of radius 0.3, of ``facets``."""
 
-    def line(s: Array) -> list[Array]:
-        angle = np.clip((s - 0.5) * np.pi, 0.0, np.pi / 2)
-        return [np.minimum(2.0 * s, 1.0) + 0.3 * np.sin(angle), 0.3 * (1.0 - np.cos(angle))]
+    def place(s: Array) -> list[Array]:
+        t = s * (along + facets)
+        angle = np.clip((t - along) / facets, 0.0, 1.0) * np.pi / 2
+        return [np.minimum(t / along, 1.0) + 0.3 * np.sin(angle), 0.3 * (1.0 - np.cos(angle))]
 
-    surface = with_bulge(chain("line2", 12, line, 0.0, 1))
+    return place
+
+
+@pytest.mark.parametrize(("facets", "along"), [(6, 6), (3, 4), (4, 20), (12, 3)])
+def test_a_flat_beside_a_fillet_stays_flat(facets: int, along: int) -> None:
+    """The line that goes over into an arc has no bulge; the facets of the arc have theirs, from the first one on."""
+    surface = with_bulge(chain("line2", along + facets, fillet(facets, along), 0.0, 1))
     assert surface.bulge is not None
     order = np.argsort(surface.points[surface.nodes[:, :2]].mean(axis=1)[:, 0])
     height = np.abs(surface.bulge[order, 2])
-    assert (height[:5] == 0.0).all()
-    sagitta = 0.3 * (1.0 - np.cos(np.pi / 24))
-    assert height[7:11] == pytest.approx(sagitta, rel=1e-9)
+    assert (height[:along] == 0.0).all()
+    sagitta = 0.3 * (1.0 - np.cos(np.pi / 4 / facets))
+    assert height[along:-1] == pytest.approx(sagitta, rel=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["tri3", "quad4"])
+def test_a_plane_beside_a_fillet_stays_plane(kind: str) -> None:
+    """As the line; edges straight up the arc, away from its end."""
+    line = fillet(6, 6)
+
+    def place(s: Array, t: Array) -> list[Array]:
+        x, z = line(s)
+        return [x, t, -z]
+
+    plain = sheet(kind, 12, place, 0.0, 1)
+    surface, corners = with_bulge(plain), CELLS[kind].corners
+    assert surface.bulge is not None
+    ends = surface.points[
+        np.stack([surface.nodes[:, :corners], np.roll(surface.nodes[:, :corners], -1, axis=1)], axis=2)
+    ]
+    height, across = np.abs(surface.bulge[:, corners : 2 * corners]), np.ptp(ends[..., 1], axis=2) < 1e-12
+    middle = ends[..., 0].mean(axis=2)
+    assert (height[middle < 1.0] == 0.0).all()
+    first = across & (middle > 1.0) & (middle < 1.0 + 0.3 * np.sin(np.pi / 12))
+    inside = first & (np.abs(ends[..., 1].mean(axis=2) - 0.5) < 0.45)
+    assert inside.sum() > 10
+    assert height[inside] == pytest.approx(0.3 * (1.0 - np.cos(np.pi / 24)), rel=1e-9)
+
+
+def test_a_chamfer_and_a_shallow_bend_are_no_arcs() -> None:
+    """Two flats that meet at 20 degrees have no bulge; a chamfer of one facet between flats is none that is met from its
+    flats' normals, which would be twice as high."""
+    bend = chain("line2", 8, lambda s: [s, np.maximum(s - 0.5, 0.0) * np.tan(np.deg2rad(20.0))], 0.0, 1)
+    assert with_bulge(bend).bulge is None
+    s = np.linspace(0.0, 1.0, 10)
+    turn = np.deg2rad(np.where(s[:-1] < 0.4, 0.0, np.where(s[:-1] < 0.5, 15.0, 30.0)))
+    x, y = (np.concatenate([[0.0], np.cumsum(part(turn) / 9)]) for part in (np.cos, np.sin))
+    chamfer = with_bulge(chain("line2", 9, lambda t: [np.interp(t, s, x), np.interp(t, s, y)], 0.0, 1))
+    assert chamfer.bulge is not None
+    assert np.abs(chamfer.bulge).max() < 0.6 / 18 * np.tan(np.deg2rad(7.5))
 
 
 @pytest.mark.parametrize("kinds", [("line2", "line3"), ("tri3", "tri6"), ("quad4", "quad8"), ("quad4", "quad9")])

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import abut
+from abut.cells import CELLS
 from abut.contact.clearance import of_corners
 from abut.contact.coupling import CouplingOptions, couple
 from abut.contact.nodal_recovery import at_facet_nodes, averages
@@ -25,7 +26,7 @@ def coupled(kind: str) -> tuple:
     target = grid("quad4", (3, 3), distort=0.1, up=False, seed=2)
     target = replace(target, points=target.points + np.array([0.07, -0.05, 0.0]))
     coupling = couple(contactor, target, resolve("auto", contactor)[1], CouplingOptions(keep_gap_samples=True))
-    return contactor, of_corners(contactor, coupling)
+    return contactor, of_corners(contactor, target, coupling)
 
 
 @pytest.mark.parametrize("kind", FACETS_3D)
@@ -81,8 +82,27 @@ def test_gap_of_a_step_is_that_on_either_side() -> None:
     raw = couple(top, mesh.facets(both), 1, CouplingOptions(reach=2.0, keep_gap_samples=True))
     fit = np.linalg.solve(raw.mass[0, :2, :2], raw.gap[:2])
     assert sorted(fit) == pytest.approx([-0.25, 1.25])
-    kept = np.linalg.solve(raw.mass[0, :2, :2], of_corners(top, raw).gap[:2])
+    kept = np.linalg.solve(raw.mass[0, :2, :2], of_corners(top, mesh.facets(both), raw).gap[:2])
     assert sorted(kept) == pytest.approx([0.0, 1.0], abs=1e-12)
+
+
+@pytest.mark.parametrize("kind", ["tri3", "quad4"])
+@pytest.mark.parametrize("side", ["contactor", "target"])
+def test_gap_of_a_bulge_is_that_at_the_corners(kind: str, side: str) -> None:
+    """Over flat facets 0.1 apart that bulge by 0.05 at their edges' middles the gap at every corner is 0.1, where a linear
+    fit lies below."""
+    top, bottom = grid(kind, (2, 2)), grid(kind, (2, 2), up=False)
+    bottom = replace(bottom, points=bottom.points + np.array([0.0, 0.0, 0.1]))
+    n = CELLS[kind].corners
+    bulge = np.zeros((len(top), 9))
+    bulge[:, n : 2 * n] = 0.05
+    pair = [replace(s, bulge=bulge) if name == side else s for name, s in (("contactor", top), ("target", bottom))]
+    raw = couple(pair[0], pair[1], 1, CouplingOptions(reach=1.0, keep_gap_samples=True, keep_points=True))
+    coupling = of_corners(pair[0], pair[1], raw)
+    mass = coupling.mass[:, :n, :n]
+    before, after = (np.linalg.solve(mass, c.gap.reshape(-1, 9)[:, :n, None]) for c in (raw, coupling))
+    assert before.min() < 0.08
+    assert after == pytest.approx(0.1, rel=1e-9)
 
 
 @pytest.mark.parametrize("kind", FACETS_3D)

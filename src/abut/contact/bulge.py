@@ -66,14 +66,34 @@ def bulge_at(surface: Surface, facet: NDArray[np.integer[Any]], shapes: Array) -
         at = np.flatnonzero(surface.kinds[facet] == CELLS[kind].code)
         n, height = shapes[at], surface.bulge[facet[at]]
         corners = CELLS[kind].corners
-        if CELLS[kind].degree == 2:
-            functions = n[:, corners:]
-        elif CELLS[kind].dim == 1 or corners == 3:
-            functions = 4.0 * n[:, :corners] * n[:, (np.arange(corners) + 1) % corners]
-        else:
-            along = n[:, :4] + n[:, [1, 2, 3, 0]]  # what is left of the way to the edge opposite
-            functions = 4.0 * along * along[:, [1, 2, 3, 0]] * along[:, [3, 0, 1, 2]]
+        functions = n[:, corners:] if CELLS[kind].degree == 2 else middle_functions(kind, n)
         result[at] = (functions * height[:, corners : corners + functions.shape[1]]).sum(axis=1)
+    return result
+
+
+def middle_functions(kind: str, shapes: Array) -> Array:
+    """The functions (n, edges) of the middle nodes that a facet of first order lacks, theory (S13), where its own have the
+    values ``shapes``, (n, 9)."""
+    corners = CELLS[kind].corners
+    if CELLS[kind].dim == 1:
+        return 4.0 * shapes[:, :1] * shapes[:, 1:2]
+    if corners == 3:
+        return np.asarray(4.0 * shapes[:, :3] * shapes[:, [1, 2, 0]])
+    along = shapes[:, :4] + shapes[:, [1, 2, 3, 0]]  # what is left of the way to the edge opposite
+    return np.asarray(4.0 * along * along[:, [1, 2, 3, 0]] * along[:, [3, 0, 1, 2]])
+
+
+def bulging(
+    contactor: Surface, target: Surface, facet: NDArray[np.integer[Any]], other: NDArray[np.integer[Any]]
+) -> NDArray[np.bool_]:
+    """Facets (n_facets,) of the contactor that bulge or face a target's that does. facet, other: (n,) of contactor and
+    target, pairs that face each other."""
+    result = np.zeros(len(contactor), dtype=bool)
+    if contactor.bulge is not None:
+        result |= contactor.bulge.any(axis=1)
+    if target.bulge is not None:
+        there: NDArray[np.bool_] = np.asarray(target.bulge.any(axis=1))
+        result[facet[there[other]]] = True
     return result
 
 
@@ -144,7 +164,34 @@ def _normals(plain: Surface) -> Array:
     normals = mean.copy()
     if len(bent):
         normals[bent] = _fitted(plain, bent, ring[bent], mean[bent])
+        at, flat = _beside_flats(plain, bent, unit)
+        normals[at] = unit[flat]
     return normals
+
+
+def _beside_flats(plain: Surface, bent: NDArray[np.int64], unit: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Points (n,) where a flat goes over into a curved part, as into a fillet, and a facet (n,) of the flat at each. bent:
+    points around which facets are not in one plane; unit: (n_facets, dim) normals.
+
+    There the normal is the flat's; the fit (S16), which turns evenly across, has one between both. A facet of a flat has a
+    corner that is not bent. One with all its corners beside flats may be a chamfer: nothing tells that it is curved."""
+    facet, local = np.nonzero(plain.nodes >= 0)
+    point, count = plain.nodes[facet, local].astype(np.int64), len(plain.points)
+    is_bent = np.zeros(count, dtype=bool)
+    is_bent[bent] = True
+    flat = np.zeros(len(plain), dtype=bool)
+    flat[facet[~is_bent[point]]] = True
+    of = np.full(count, -1)
+    here = flat[facet] & is_bent[point]
+    of[point[here]] = facet[here]
+    other = np.zeros(count, dtype=bool)  # beside flats in several planes
+    other[point[here]] |= (np.abs(unit[facet[here]] - unit[of[point[here]]]) > ROUNDING).any(axis=1)
+    curved = np.zeros(len(plain), dtype=bool)
+    curved[facet[is_bent[point] & (of[point] < 0)]] = True
+    chamfer = np.zeros(count, dtype=bool)
+    chamfer[point[~flat[facet] & ~curved[facet]]] = True
+    at = np.flatnonzero((of >= 0) & ~other & ~chamfer)
+    return at, of[at]
 
 
 def _rim_points(plain: Surface) -> NDArray[np.int64]:

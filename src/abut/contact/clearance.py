@@ -13,10 +13,13 @@ from numpy.typing import NDArray
 
 from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.bases import block_diagonal, sound_facets
-from abut.contact.coupling import Coupling
+from abut.contact.bulge import bulging
+from abut.contact.corner_fit import fit_functions, fitted
+from abut.contact.coupling import Coupling, IntegrationPoints
 from abut.contact.geometry import by_kind, corner_functions, facet_sizes, function_count, nodal_normals
 from abut.contact.node_to_segment import feet
 from abut.mesh.surface import Surface
+from abut.types import Sparse
 
 STEP = 1e-3  # of the facet's size: gaps of neighbouring target facets that differ by less are one smooth gap
 
@@ -87,12 +90,14 @@ def _on_to_target(
     return move
 
 
-def of_corners(contactor: Surface, coupling: Coupling) -> Coupling:
+def of_corners(contactor: Surface, target: Surface, coupling: Coupling) -> Coupling:
     """The coupling of the corners' functions, degree 1, with the weighted gap of a fit to the gap's values at the corners.
 
     On each facet the gap is fitted by the functions of ``coupling``, of degree 1 or 2, in the mean; its values at the
     corners take the gap's place. Of a gap with a step the fit undershoots, by up to a third of the step, and is kept
-    within the gaps that are there; slivers keep the gap as it is."""
+    within the gaps that are there; slivers keep the gap as it is. Where facets of first order bulge the fit is of second
+    order too, from the coupling's integration points. coupling: with gap samples, without which nothing is fitted, and
+    where facets bulge with its points (``CouplingOptions``)."""
     n_rows = coupling.contactor_part.shape[0]
     result = coupling if coupling.degree == 1 else _restricted(contactor, coupling)
     if coupling.gap_samples is None or not len(coupling.gap_samples.gap):
@@ -106,7 +111,47 @@ def of_corners(contactor: Surface, coupling: Coupling) -> Coupling:
         fit = np.linalg.solve(coupling.mass[chosen][:, :m, :m], integrals[chosen, :m, None])[:, :n]
         kept = np.clip(fit, low[chosen, None, None], high[chosen, None, None])
         gap[chosen, :n] = (result.mass[chosen][:, :n, :n] @ kept)[..., 0]
+    if coupling.points is not None:
+        gap = _over_bulges(contactor, target, coupling.points, low, high, gap)
     return replace(result, gap=gap.reshape(n_rows))
+
+
+def _over_bulges(
+    contactor: Surface,
+    target: Surface,
+    at: IntegrationPoints,
+    low: NDArray[np.float64],
+    high: NDArray[np.float64],
+    gap: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """``gap``, int N_k g, (n_facets, 9), with that of fits of second order where facets of first order bulge, or the target
+    does. low, high: (n_facets,) range of g. A linear fit lies below a parabola by 2/3 of its sagitta at the corners: a punch
+    would rest on the rounding of its edge."""
+    result = gap.copy()
+    curved = bulging(contactor, target, at.facet, at.target_facet)
+    for kind, _ in by_kind(contactor):
+        chosen = np.flatnonzero(curved & (contactor.kinds == CELLS[kind].code))
+        if CELLS[kind].degree == 2 or not len(chosen):
+            continue
+        n = CELLS[kind].corners
+        number = np.full(len(contactor), -1)
+        number[chosen] = np.arange(len(chosen))
+        here = np.flatnonzero(number[at.facet] >= 0)
+        functions, corners = fit_functions(kind, _local_values(at.pressure[here], at.facet[here]))
+        group = number[at.facet[here]]
+        sound, fit, mass, _ = fitted(functions, corners, at.weight[here], at.gap[here], group, len(chosen))
+        chosen = chosen[sound]
+        kept = np.clip(fit, low[chosen, None], high[chosen, None])
+        result[chosen, :n] = (mass @ kept[..., None])[..., 0]
+    return result
+
+
+def _local_values(pressure: Sparse, facet: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Values (n, 9) of the functions of the facet on which each point lies, of those (n, 9 n_facets) of all."""
+    entries = pressure.tocoo()
+    result = np.zeros((len(facet), MAX_FACET_NODES))
+    result[entries.row, entries.col - MAX_FACET_NODES * facet[entries.row]] = entries.data
+    return result
 
 
 def _restricted(contactor: Surface, coupling: Coupling) -> Coupling:

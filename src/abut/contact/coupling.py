@@ -298,7 +298,9 @@ def _plan_part(part: Surface, target: Surface, options: CouplingOptions, normals
     turning = turning_within(part, normals)
     points, divisions = _plan(part, tables, options.points, turning)
     if options.points == "auto":
-        points = np.where(turning > SAME_NORMAL, np.maximum(points, CURVED_POINTS[part.dim]), points).astype(np.int32)
+        bulges = part.bulge is not None or target.bulge is not None  # enough for fits of second order
+        curved = (turning > SAME_NORMAL) | bulges
+        points = np.where(curved, np.maximum(points, CURVED_POINTS[part.dim]), points).astype(np.int32)
     turning = _turning_of_target(target, options.target_across)
     return Plan(points, divisions, *_plan(target, tables, options.points, turning))
 

@@ -37,15 +37,18 @@ def coupled(
             name = DUAL  # the law of friction looks at pressure and traction node by node
         of_dual = name in (DUAL, DUAL_P1)
         degree = surface_degree(contactor) if of_dual else degree
+        keep = (contact.law == LAWS[1] and not tied) or contact.frictional
+        curved = contactor.bulge is not None or target.bulge is not None
         options = CouplingOptions(
             rule=contact.integration.rule, points=contact.integration.points, reach=reach, componentwise=tied,
-            keep_points=(contact.law == LAWS[1] and not tied) or contact.frictional, keep_gap_samples=not tied,
+            keep_points=keep or (of_dual and curved), keep_gap_samples=not tied,
             normals=normals,
         )  # fmt: skip
         closed = couple(contactor, target, degree, replace(options, adjust=contact.adjust))
         without = partial(couple, contactor, target, degree, options)
         coupling = partly_adjusted(contactor, target, closed, contact.adjust, reach, without, normals)
-        coupling = of_corners(contactor, coupling) if of_dual else coupling
+        coupling = of_corners(contactor, target, coupling) if of_dual else coupling
+        coupling = coupling if keep else replace(coupling, points=None)
         contactor = contactor if tied else by_target(contactor, target, coupling)
         space = pressure_space(name, contactor, coupling, tied) if coupling.segments.any() else None
     if space is None or not coupling.segments.any():

@@ -204,9 +204,10 @@ class Current:
 
     @cached_property
     def fits(self) -> bool:
-        """Whether gaps are fitted: those of dual functions on quadratic facets."""
-        pair = self.pair
-        return pair.space.degree < surface_degree(pair.contactor) and not pair.space.ordinary
+        """Whether gaps are fitted: those of dual functions on quadratic facets, and where facets bulge."""
+        pair, quadratic = self.pair, self.pair.space.degree < surface_degree(self.pair.contactor)
+        bulges = pair.contactor.bulge is not None or pair.target.bulge is not None
+        return (quadratic or bulges) and not pair.space.ordinary
 
     def fit(self, displacement: Array) -> Array:
         """What the fit adds to int N_k g at a displacement, (9 n_facets,), theory (G15)."""

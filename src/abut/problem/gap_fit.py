@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from abut._core import couple_surfaces
 from abut.cells import CELLS, MAX_FACET_NODES
-from abut.contact.bases import sound_facets
-from abut.contact.bulge import bulge_at
+from abut.contact.bulge import bulge_at, bulging
+from abut.contact.corner_fit import fit_functions, fitted
 from abut.contact.coupling import CouplingOptions, cutting_arguments
-from abut.contact.geometry import Smoothing, by_kind, corner_functions, nodal_normals
+from abut.contact.geometry import Smoothing, by_kind, nodal_normals
 from abut.mesh.surface import Surface
 
 Array = NDArray[np.float64]
@@ -68,8 +68,8 @@ class MovedSides:
 
 
 def fit_change(sides: MovedSides, sight: Sight, across: Smoothing, share: Array) -> Array:
-    """What int N_k g of the corners' functions N_k on quadratic facets becomes by the fit, less what it was, (9 n_facets,),
-    g being the gap of the undeformed shapes as they lie now. Zero on linear facets.
+    """What int N_k g of the corners' functions N_k becomes by the fit, less what it was, (9 n_facets,), g being the gap of
+    the undeformed shapes as they lie now. Zero on linear facets that do not bulge and face none that do.
 
     across: the contactor's creases; share: (n_facets,) of it that counts."""
     contactor, points = sides.contactor, sight.points
@@ -81,24 +81,20 @@ def fit_change(sides: MovedSides, sight: Sight, across: Smoothing, share: Array)
     np.minimum.at(low, sight.samples.facet, samples)
     np.maximum.at(high, sight.samples.facet, samples)
     number = np.full(len(contactor), -1)
-    for kind, facets in by_kind(contactor):
-        if CELLS[kind].degree == 1:
-            continue
-        corners = corner_functions(kind, 2)
-        m, n = corners.shape
+    curved = bulging(contactor, sides.target, points.facet, points.target_facet)
+    for kind, _ in by_kind(contactor):
+        fits = (contactor.kinds == CELLS[kind].code) & (curved | (CELLS[kind].degree == 2)) & (share > 0.0)
+        facets = np.flatnonzero(fits)
         number[facets] = np.arange(len(facets))
-        at = np.flatnonzero(contactor.kinds[points.facet] == CELLS[kind].code)
-        entries = sight.weight[at], (number[points.facet[at]], np.arange(len(at)))
-        total = sp.csr_matrix(entries, shape=(len(facets), len(at)))
-        own = points.own[at, :m]
-        mass = (total @ (own[:, :, None] * own[:, None, :]).reshape(len(at), m * m)).reshape(-1, m, m)
-        moment = total @ (own * gap[at, None])
-        sound = sound_facets(mass) & (share[facets] > 0.0)
-        mass, moment, chosen = mass[sound], moment[sound], facets[sound]
-        fit = np.linalg.solve(mass, moment[..., None])[:, :n, 0]
+        at = np.flatnonzero((contactor.kinds[points.facet] == CELLS[kind].code) & (number[points.facet] >= 0))
+        functions, corners = fit_functions(kind, points.own[at])
+        sound, fit, mass, moment = fitted(
+            functions, corners, sight.weight[at], gap[at], number[points.facet[at]], len(facets)
+        )
+        chosen = facets[sound]
         kept = np.clip(fit, low[chosen, None], high[chosen, None])
-        change = (corners.T @ mass @ corners @ kept[..., None])[..., 0] - moment @ corners
-        result[chosen, :n] = share[chosen, None] * change
+        change = (mass @ kept[..., None])[..., 0] - moment
+        result[chosen, : corners.shape[1]] = share[chosen, None] * change
     return result.ravel()
 
 
