@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -14,11 +16,14 @@ from abut.problem.loads import applied_load
 
 RADIUS, WIDTH, FORCE = 5.0, 3.0, 100.0
 STEEL = abut.LinearElastic(210e3, 0.3)
+NOWHERE = np.empty((0, 2))  # planes of symmetry
 
 
-def bore(angles: tuple[float, float], force: tuple[float, float], cell: str = "quad8", **more: object) -> abut.Model:
+def bore(
+    angles: tuple[float, float], force: tuple[float, float], cell: str = "quad8", around: int = 24, **more: object
+) -> abut.Model:
     """A sector of a ring, loaded at its inner side."""
-    mesh = make.join({"lug": make.ring([RADIUS, 10.0], angles, cells=[2, 24], cell=cell)})
+    mesh = make.join({"lug": make.ring([RADIUS, 10.0], angles, cells=[2, around], cell=cell)})
     return abut.Model(
         mesh,
         [abut.Solid("lug", STEEL)],
@@ -45,10 +50,29 @@ def test_half_a_bore(cell: str, turn: float) -> None:
     behind = (x @ towards < -2.0) & (np.hypot(*x.T) < RADIUS + 1e-9)
     assert behind.any()
     assert not forces[behind].any()
-    largest = np.linalg.norm(bearing_direction(model.mesh.surface("lug.inner"), FORCE * towards, ""))
+    largest = np.linalg.norm(bearing_direction(model.mesh.surface("lug.inner"), FORCE * towards, NOWHERE, ""))
     chords = 340.0 / 24.0
     wide = (np.deg2rad(chords) / 2.0) ** 2 if cell == "quad4" else 1e-3  # area and directions of chords
     assert largest == pytest.approx(2.0 * FORCE / (np.pi * RADIUS), rel=wide)
+
+
+@pytest.mark.parametrize("cell", ["quad4", "quad8", "tri3"])
+def test_a_half_model(cell: str) -> None:
+    """Cut along the line of action, with half of the force: loaded as that half of the whole, both sides being alike."""
+    whole, force = bore((-170.0, 170.0), (FORCE, 0.0), cell), (0.5 * FORCE, 0.0)
+    half = bore((0.0, 170.0), force, cell, around=12)
+    with pytest.raises(InputError, match=r"no pressure on 'lug[.]inner' adds up"):
+        applied_load(half)  # held nowhere along the cut: a sector of its own
+    half = replace(half, supports=[*half.supports, abut.Support("lug.start", y=0)])
+    loads, x = (applied_load(model)[:, 0].reshape(-1, 2) for model in (whole, half)), half.mesh.points
+    of_whole, of_half = loads
+    at = [int(np.argmin(np.linalg.norm(whole.mesh.points - point, axis=1))) for point in x]
+    assert whole.mesh.points[at] == pytest.approx(x, abs=1e-9)
+    cut = np.abs(x[:, 1]) < 1e-9
+    assert of_half[~cut] == pytest.approx(of_whole[at][~cut], rel=1e-9, abs=1e-9 * FORCE)
+    assert of_half[cut, 0] == pytest.approx(0.5 * of_whole[at][cut, 0], rel=1e-9, abs=1e-9 * FORCE)
+    cap = replace(half, loads=[abut.Force("lug.inner", (0.0, FORCE), bearing=True)])  # off the plane: no half
+    assert applied_load(cap)[:, 0].reshape(-1, 2).sum(axis=0) == pytest.approx([0.0, FORCE], abs=1e-9 * FORCE)
 
 
 def test_a_sector() -> None:
@@ -59,7 +83,7 @@ def test_a_sector() -> None:
     twice, square = np.sin(2.0 * end) / 2.0, np.sin(end) ** 2
     wanted = np.linalg.solve(RADIUS / 2.0 * np.array([[end + twice, square], [square, end - twice]]), towards)
     assert min(wanted[0], wanted @ [np.cos(end), np.sin(end)]) > 0.0
-    assert bearing_direction(model.mesh.surface("lug.inner"), towards, "") == pytest.approx(wanted, rel=1e-4)
+    assert bearing_direction(model.mesh.surface("lug.inner"), towards, NOWHERE, "") == pytest.approx(wanted, rel=1e-4)
     assert applied_load(model)[:, 0].reshape(-1, 2).sum(axis=0) == pytest.approx(towards, rel=1e-12)
 
 

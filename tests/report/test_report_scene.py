@@ -11,9 +11,9 @@ import pytest
 import abut
 from abut.materials.invariants import principal, von_mises
 from abut.mesh import make
+from abut.model.mirror_planes import mirrors
 from abut.report import write_report
 from abut.report.inside import tetrahedra
-from abut.report.mirror import mirrors
 from abut.report.quantities import extremes, largest_by_body, peak_steps
 from abut.report.scene import kept, scene
 from models.page import BROWSER, Page, in_browser

@@ -23,6 +23,7 @@ from abut.mesh.patches import Patches
 from abut.mesh.surface import Surface
 from abut.model import Force, Load, Model, NodalForce, Pressure, Traction
 from abut.model.conditions import COMPONENTS, Support, weights
+from abut.model.mirror_planes import at_ends
 from abut.problem.pair import Pair
 from abut.solution import ContactResult
 from abut.types import Sparse
@@ -125,7 +126,7 @@ def _add_load(model: Model, skin: _Skin, load: Load, factor: float) -> None:
         traction = -values[..., None] * before / np.maximum(np.linalg.norm(before, axis=2, keepdims=True), 1e-300)
     elif isinstance(load, Force) and load.bearing:
         normals = before / np.maximum(np.linalg.norm(before, axis=2, keepdims=True), 1e-300)
-        direction = bearing_direction(surface, np.array(load.value), f"force on '{load.on}'")
+        direction = bearing_direction(surface, np.array(load.value), at_ends(model, surface), f"force on '{load.on}'")
         traction = -factor * bearing_pressure(normals, direction)[..., None] * normals
     elif isinstance(load, Force):
         traction = np.broadcast_to(factor * np.array(load.value) / full_moments(surface, 0).sum(), x.shape)

@@ -18,8 +18,13 @@ def bearing_pressure(normals: NDArray[np.float64], direction: NDArray[np.float64
     return np.maximum(0.0, -normals @ direction)
 
 
-def bearing_direction(surface: Surface, force: NDArray[np.float64], where: str) -> NDArray[np.float64]:
+def bearing_direction(
+    surface: Surface, force: NDArray[np.float64], planes: NDArray[np.float64], where: str
+) -> NDArray[np.float64]:
     """The vector (dim,) whose pressures add up to a force (dim,) over the surface.
+
+    planes: unit normals (n, dim) of planes of symmetry at which the surface ends. About those along the force it is half of
+    a whole, whose pressures add up to twice the force; what they push across such a plane its supports take.
 
     Raises InputError, beginning with ``where``, for forces that no pressure on this surface adds up to."""
     normals, areas = [], []
@@ -28,6 +33,9 @@ def bearing_direction(surface: Surface, force: NDArray[np.float64], where: str) 
         normals.append((normal / size[..., None]).reshape(-1, surface.dim))
         areas.append((weights * size).ravel())
     n, area = np.concatenate(normals), np.concatenate(areas)
+    for plane in planes[np.abs(planes @ force) <= LEFT * np.linalg.norm(force)]:
+        n = np.concatenate([n, n - 2.0 * np.outer(n @ plane, plane)])
+        area, force = np.tile(area, 2), 2.0 * force
     direction = force
     for _ in range(ROUNDS):
         pressed = n[n @ direction < 0.0]
@@ -42,10 +50,12 @@ def bearing_direction(surface: Surface, force: NDArray[np.float64], where: str) 
     )
 
 
-def bearing_load(surface: Surface, force: NDArray[np.float64], where: str) -> NDArray[np.float64]:
-    """Its nodal forces (dim n_points,). Raises InputError as ``bearing_direction`` does."""
+def bearing_load(
+    surface: Surface, force: NDArray[np.float64], planes: NDArray[np.float64], where: str
+) -> NDArray[np.float64]:
+    """Its nodal forces (dim n_points,). Raises InputError as ``bearing_direction`` does, whose ``planes`` these are."""
     load = np.zeros(surface.points.shape)
-    direction = bearing_direction(surface, force, where)
+    direction = bearing_direction(surface, force, planes, where)
     for nodes, values, weights, normal, _ in facet_points(surface):
         unit = normal / np.linalg.norm(normal, axis=2)[..., None]
         push = -bearing_pressure(unit, direction)[..., None] * normal

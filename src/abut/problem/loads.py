@@ -27,6 +27,7 @@ from abut.model import (
     Traction,
 )
 from abut.model.conditions import weights
+from abut.model.mirror_planes import at_ends
 from abut.problem.rigid_bodies import RigidBody, rigid_bodies
 from abut.problem.sections import preload_forces
 
@@ -135,7 +136,8 @@ def _forces(model: Model, load: Load) -> NDArray[np.float64]:
     if isinstance(load, Traction):
         return traction_load(mesh.surface(load.on), load.value, f"traction on '{load.on}': value")
     if isinstance(load, Force) and load.bearing:
-        return bearing_load(mesh.surface(load.on), np.array(load.value), f"loads[{model.loads.index(load)}].bearing")
+        bore, where = mesh.surface(load.on), f"loads[{model.loads.index(load)}].bearing"
+        return bearing_load(bore, np.array(load.value), at_ends(model, bore), where)
     if isinstance(load, Force):
         return force_load(mesh.surface(load.on), np.array(load.value))
     if isinstance(load, NodalForce):

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from abut.mesh.mesh import Mesh
 from abut.model import Model
+from abut.model.mirror_planes import mirrors
 from abut.report.arrays import moved as on_grid
 from abut.report.arrays import rounded
 from abut.report.friction import arrow_nodes, arrow_normals, at_arrows, friction_fields
 from abut.report.inside import tetrahedra
-from abut.report.mirror import mirrors
 from abut.report.quantities import Extremes, contact_ranges, extremes, of_nodes, of_stress, peak_steps
 from abut.report.surface_triangles import Patch, Skin, patch, skin
 from abut.solution import ContactResult, Solution, Step

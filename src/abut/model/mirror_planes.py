@@ -1,4 +1,4 @@
-"""Planes at which a model may be mirrored in the picture: those of symmetry, as far as supports tell."""
+"""Planes at which a model may be mirrored: those of symmetry, as far as supports tell."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.model import Model, Support
+from abut.mesh.surface import Surface
+from abut.model.conditions import Support
+from abut.model.model import Model
 
 FLAT = 1e-6  # of the model's size
 
@@ -48,6 +50,17 @@ def mirrors(model: Model) -> list[list[float]]:
     if mesh.axisymmetric:
         planes.insert(0, [-1.0, 0.0, 0.0, 0.0])
     return planes[:3]
+
+
+def at_ends(model: Model, surface: Surface) -> NDArray[np.float64]:
+    """Unit normals (n, dim) of those planes which a surface reaches, about which it goes on as its mirror image."""
+    if model.mesh.axisymmetric:
+        return np.empty((0, model.dim))
+    planes = np.array(mirrors(model)).reshape(-1, 4)
+    points = model.mesh.points[np.unique(surface.nodes[surface.nodes >= 0])]
+    away = points @ planes[:, : model.dim].T - planes[:, 3]
+    size = float(np.ptp(model.mesh.points, axis=0).max())
+    return np.asarray(planes[away.max(axis=0) > -FLAT * size, : model.dim])
 
 
 def _held(
