@@ -9,6 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.bodies.mean_turn import mean_turn
 from abut.bodies.rigid_modes import FREE, RigidModes, motions
 from abut.dofs import dofs_at, n_dofs
 from abut.mesh.mesh import Mesh
@@ -106,10 +107,8 @@ class HeldMotions:
     def _gone(self, points: Array, moved: Array, field: Array, x: Array) -> Array:
         """A motion, that has gone with the body of ``points`` to where these have ``moved``, at points x (n, dim)."""
         middle, now = points.mean(axis=0), moved.mean(axis=0)
-        turn = np.eye(points.shape[1])
-        if not self.model.mesh.axisymmetric:
-            left, _, right = np.linalg.svd((moved - now).T @ (points - middle))
-            turn = (left * np.append(np.ones(len(turn) - 1), np.linalg.det(left @ right))) @ right
+        dim, even = points.shape[1], np.full(len(points), 1.0 / len(points))
+        turn = np.eye(dim) if self.model.mesh.axisymmetric else mean_turn(points - middle, moved, even)[:dim, :dim]
         back = (x - now) @ turn + middle
         return np.asarray((back @ field[:-1] + field[-1]) @ turn.T)
 
