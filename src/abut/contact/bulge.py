@@ -33,6 +33,15 @@ class Held:
     points: NDArray[np.int64]
     directions: Array
 
+    def at(self, points: NDArray[np.integer[Any]]) -> tuple[NDArray[np.int64], Array]:
+        """All directions in which points (m,) are held: the number (k,) of each in ``points``, rising, and its direction
+        (k, dim)."""
+        order = np.argsort(self.points, kind="stable")
+        first, last = (np.searchsorted(self.points[order], points, side) for side in ("left", "right"))
+        count = last - first
+        which = np.arange(int(count.sum())) + np.repeat(first - np.cumsum(count) + count, count)
+        return np.repeat(np.arange(len(points)), count), self.directions[order[which]]
+
 
 def with_bulge(surface: Surface, held: Held | None = None) -> Surface:
     """The surface with its ``bulge``: None where it is flat everywhere."""
@@ -300,11 +309,8 @@ def _on_planes(normals: Array, plain: Surface, points: NDArray[np.int64], rim: N
     mean = (at * used[..., None]).sum(axis=1) / used.sum(axis=1)[:, None]
     far = np.where(used, np.linalg.norm(at - mean[:, None], axis=2), 0.0).max(axis=1)
     np.maximum.at(turn, plain.nodes[used], np.broadcast_to(far[:, None], used.shape)[used])
-    order = np.argsort(held.points, kind="stable")
-    first, last = (np.searchsorted(held.points[order], points, side) for side in ("left", "right"))
-    here = np.repeat(np.arange(len(rim)), last - first)
-    which = order[np.arange(len(here)) + np.repeat(first - np.cumsum(last - first) + (last - first), last - first)]
-    directions, here = held.directions[which], rim[here]
+    number, directions = held.at(points)
+    here = rim[number]
     leans = np.abs(np.einsum("na,na->n", unit[here], directions)) <= turn[here]
     leans &= turn[here] > ROUNDING
     return Held(here[leans], directions[leans])

@@ -181,11 +181,8 @@ def _planes(split: Surface, owner: NDArray[np.int64], held: Held | None) -> tupl
     directions = directions * np.sign(largest)[:, None]
     key = np.column_stack([points, np.round(directions / SAME)])
     _, index = np.unique(key, axis=0, return_index=True)
-    points, directions = points[index], directions[index]
-    first, last = (np.searchsorted(points, owner[used], side) for side in ("left", "right"))
-    count = last - first
-    which = np.arange(int(count.sum())) + np.repeat(first - np.cumsum(count) + count, count)
-    return np.repeat(used, count).astype(np.int64), directions[which]
+    number, directions = Held(points[index], directions[index]).at(owner[used])
+    return used[number].astype(np.int64), directions
 
 
 def _left(points: NDArray[np.int64], directions: Array) -> tuple[NDArray[np.int64], Array]:
