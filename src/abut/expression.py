@@ -67,6 +67,42 @@ class Expressions:
         return np.column_stack([component(points) for component in self.components])
 
 
+def with_names(text: str, names: Mapping[str, float]) -> float | str:
+    """An expression in which numbers have names: its value, or, where it depends on the position, the expression of x, y, z
+    that is left. Raises InputError for what is no expression, names that are not known, and values that are no numbers.
+
+    >>> with_names("2*r + 1", {"r": 0.5}), with_names("r*x", {"r": 0.5})
+    (2.0, '0.5 * x')
+    """
+    tree = _parsed(text)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Name) and node.id not in (*names, *AXES, *CONSTANTS, *FUNCTIONS, *OF_TWO):
+            raise InputError(f"unknown name {node.id!r}{nearest(node.id, (*names, *AXES, *CONSTANTS))}")
+    left = ast.fix_missing_locations(_Numbers(names).visit(tree))
+    _check(left)
+    if any(isinstance(node, ast.Name) and node.id in AXES for node in ast.walk(left)):
+        return ast.unparse(left)
+    with np.errstate(all="ignore"):
+        value = float(_value(left, {name: np.float64(value) for name, value in CONSTANTS.items()}))  # type: ignore[misc]
+    if not math.isfinite(value):
+        raise InputError(f"{text!r} is no finite number")
+    return value
+
+
+class _Numbers(ast.NodeTransformer):
+    """Puts numbers in place of names; negative ones as operations, which keep their brackets in powers."""
+
+    def __init__(self, names: Mapping[str, float]) -> None:
+        self.names = names
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:
+        if node.id not in self.names:
+            return node
+        value = self.names[node.id]
+        size = ast.Constant(abs(value))
+        return ast.UnaryOp(ast.USub(), size) if value < 0.0 else size
+
+
 def _parsed(text: str) -> ast.expr:
     if len(text) > LONGEST:
         raise InputError(f"an expression of more than {LONGEST} characters; give a function in Python instead")

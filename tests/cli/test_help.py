@@ -6,7 +6,7 @@ import pytest
 
 from abut.cli import main
 
-COMMANDS = ("run", "check", "convert", "verify", "infsup", "fit", "schema")
+COMMANDS = ("run", "sweep", "mesh", "check", "convert", "verify", "infsup", "fit", "schema")
 
 
 @pytest.mark.parametrize("arguments", [[], ["--help"]], ids=["nothing", "help"])

@@ -17,6 +17,7 @@ from abut.verify import interface_patch
 from models.decks import BRICKS, HELD, PAIR, PUSH, write
 
 JOB = """schema = 1
+parameters = { stiff = 1000 }
 [mesh.bodies.lower]
 kind = "rectangle"
 x = [0, 4]
@@ -31,7 +32,7 @@ cells = [3, 1]
 cell = "quad4"
 [materials.m]
 kind = "linear-elastic"
-young = 1000.0
+young = "=stiff"
 poisson = 0.3
 [model]
 plane = "strain"
@@ -62,7 +63,11 @@ solids = [{ body = "b", material = "m" }]
 supports = [{ on = "b.bottom", x = 0, y = 0, z = 0 }]
 """
 VALUES = {  # of options that take one; {} is the folder of the test
-    ("run", "--ignore"): "FRICTION", ("run", "--output"): "{}/results",
+    ("run", "--ignore"): "FRICTION", ("run", "--output"): "{}/results", ("run", "--set"): "stiff=2e3",
+    ("sweep", "--set"): "stiff=1e3,2e3", ("sweep", "--output"): "{}/sweep",
+    ("mesh", "--size"): "2", ("mesh", "--contact-size"): "0.5", ("mesh", "--reach"): "0.1", ("mesh", "--cell"): "tet4",
+    ("mesh", "--unit"): "m", ("mesh", "--names"): "a", ("mesh", "--hold"): "a.zmin", ("mesh", "--press"): "a.zmax=1",
+    ("mesh", "--output"): "{}/part.toml", ("mesh", "--gmsh"): "gmsh", ("check", "--set"): "stiff=2e3",
     ("check", "--ignore"): "FRICTION", ("check", "--output"): "{}/motions", ("check", "--write-pairs"): "{}/pairs.toml",
     ("convert", "--ignore"): "FRICTION",
     ("verify", "--levels"): "2", ("verify", "--plot"): "{}/plot.svg", ("verify", "--job"): "{}/job.toml",
@@ -75,6 +80,8 @@ VALUES = {  # of options that take one; {} is the folder of the test
 }  # fmt: skip
 SUBJECTS = {  # of each subcommand
     "run": (["{}/job.toml"], ["{}/deck.inp"]),
+    "sweep": (["{}/job.toml"], ["{}/none.toml"]),
+    "mesh": (["{}/none.step", "--size", "1"],),
     "check": (["{}/job.toml"], ["{}/auto.toml"], ["{}/deck.inp"], ["{}/loose.toml"], ["{}/petsc.toml"]),
     "convert": (["{}/deck.inp", "{}/new.toml"], ["{}/deck.inp", "{}/new.vtu"], ["{}/job.toml", "{}/new.toml"]),
     "verify": ([], ["one"], ["none"]),
@@ -83,7 +90,7 @@ SUBJECTS = {  # of each subcommand
     "fit": (["yeoh"], ["ogden"]),
 }
 
-AT_ONCE = {"fit": 2}  # options of these many, which say something each on their own
+AT_ONCE = {"fit": 2, "run": 4, "check": 3, "mesh": 2}  # options of these many, which say something each on their own
 
 
 def commands() -> dict[str, argparse.ArgumentParser]:

@@ -1,4 +1,4 @@
-"""The command line: abut run, check, convert, verify, infsup, fit, schema."""
+"""The command line: abut run, sweep, mesh, check, convert, verify, infsup, fit, schema."""
 
 from __future__ import annotations
 
@@ -16,7 +16,9 @@ from typing import Any
 from abut.cli.check import add_check
 from abut.cli.convert import add_convert
 from abut.cli.fit import add_fit
+from abut.cli.mesh import add_mesh
 from abut.cli.run import add_run, passes_on
+from abut.cli.sweep import add_sweep
 from abut.cli.terminal import shortened, show
 from abut.cli.verify import add_infsup, add_verify
 from abut.errors import AbutError, InputError
@@ -119,6 +121,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.set_defaults(together=False)  # whether all processes take part
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     add_run(commands)
+    add_sweep(commands)
+    add_mesh(commands)
     add_check(commands)
     add_convert(commands)
     add_verify(commands)

@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from abut.cli.run import add_ignore
+from abut.cli.run import add_ignore, add_set
 from abut.cli.terminal import shortened, show
 from abut.errors import AbutError
 
@@ -26,6 +26,7 @@ def add_check(commands: Any) -> None:
     )
     check.add_argument("job", type=Path, help="the job file or deck")
     add_ignore(check)
+    add_set(check)
     check.add_argument("--json", action="store_true", help="print the findings as JSON")
     check.add_argument("--output", type=Path, metavar="DIR", help="write the free rigid-body modes to DIR/motions.vtu")
     check.add_argument(
@@ -42,9 +43,12 @@ def _check(arguments: argparse.Namespace) -> int:
     from abut.job import load_job
     from abut.job.load import DECK
     from abut.job.pairs import write_pairs
+    from abut.job.parameters import read_settings
 
     try:
-        job = load_job(arguments.job, ignore=arguments.ignore, soft=arguments.soft_contact)
+        job = load_job(
+            arguments.job, ignore=arguments.ignore, soft=arguments.soft_contact, settings=read_settings(arguments.set)
+        )
     except AbutError as error:
         report = Report((from_error(error, "job"),))
         _print(report, arguments.json)

@@ -51,6 +51,7 @@ def add_run(commands: Any) -> None:
     )
     run.add_argument("job", type=Path, help="the job file or deck")
     add_ignore(run)
+    add_set(run)
     run.add_argument("--output", type=Path, metavar="DIR", help="write results here instead of the job's own directory")
     run.add_argument(
         "--restart", action="store_true", help="continue after the last step that an earlier run has written"
@@ -73,6 +74,13 @@ def add_ignore(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--soft-contact", action="store_true", help="a deck's own PRESSURE-OVERCLOSURE, in place of exact contact"
+    )
+
+
+def add_set(parser: argparse.ArgumentParser) -> None:
+    """Parameters in place of those of the job."""
+    parser.add_argument(
+        "--set", action="append", default=[], metavar="NAME=VALUE", help="a parameter of the job; may be repeated"
     )
 
 
@@ -113,7 +121,7 @@ def _run(arguments: argparse.Namespace, team: Team | None) -> int:
         Interrupt(_say, leave=progress.close) as interrupt,
     ):
         try:
-            solution, directory = _solve(arguments, progress, interrupt, team)
+            solution, directory = solve_job(arguments, progress, interrupt, team)
         except Stopped as reason:
             progress.close()
             _say(str(reason))
@@ -137,12 +145,13 @@ def _run(arguments: argparse.Namespace, team: Team | None) -> int:
     return DONE
 
 
-def _solve(
+def solve_job(
     arguments: argparse.Namespace, progress: Progress, interrupt: Interrupt, team: Team | None
 ) -> tuple[Solution, Path]:
     """Solve and write, every step as soon as it has converged. Raises Stopped, with what is left in words."""
     from abut.analysis import solve
     from abut.job import load_job
+    from abut.job.parameters import read_settings
     from abut.output import restart
     from abut.output.fields import write_fields
     from abut.output.parallel import Pieces
@@ -151,7 +160,8 @@ def _solve(
     from abut.solution import Phase
 
     progress(Phase(f"reading {arguments.job}"))
-    job = load_job(arguments.job, ignore=arguments.ignore, soft=arguments.soft_contact)
+    settings = read_settings(arguments.set)
+    job = load_job(arguments.job, ignore=arguments.ignore, soft=arguments.soft_contact, settings=settings)
     _check_linear(job)
     for text in (*(f"ignored: {what}" for what in job.ignored), *job.notes):
         progress(text)

@@ -64,6 +64,11 @@ MODEL = {
     "meant to be one, tie them or let them share nodes",
     "plastic strain": 'with small kinematics: kinematics = "finite"; with finite: check loads and yield stress, strains of '
     "this size stretch cells to more than twice their length",
+    "preload": "what is loaded at the section of a preload carries none of it: tighten before the loads come, in steps of "
+    "their own, and let the section cut all of one body",
+    "loose bolts": "tighten the bolt more, or load it less: a bolt carries no compression",
+    "weak springs": "hold what the weak springs hold by a support, a contact, a tie or friction; if they only keep a part "
+    "in place, make them weaker",
     "rotation": 'kinematics = "finite": lengths change by half the square of a turn that is taken for small',
     "response": "check that what is moved or loaded touches another body or a support: signs and units of motions and "
     "loads, gaps, names of contacts; `abut check` names gaps that stay open",

@@ -19,6 +19,8 @@ ANYWHERE = {  # keys that mean the same in every table
 MEANINGS: dict[str, dict[str, str]] = {
     "JobFile": {
         "schema": "version of this format, always 1",
+        "parameters": 'numbers by name, or expressions of those above; any value of the job may be a text "= ..." of them; '
+        "abut run --set NAME=VALUE changes them",
         "mesh": "where the mesh comes from: a file, or bodies made by abut",
         "model": "what kind of model it is",
         "materials": "materials by name",

@@ -16,6 +16,7 @@ from abut.io.toml import read_toml
 from abut.job.contacts import Resolved, resolve_contacts
 from abut.job.material_tables import Materials, OverTemperatureTable
 from abut.job.other_names import key_called, kind_said
+from abut.job.parameters import parameters, worked_out
 from abut.job.schema import EquationTable, JobFile, MeshTable
 from abut.job.values import values
 from abut.materials.anisotropic import Anisotropic, Orthotropic
@@ -81,7 +82,7 @@ DECK = ".inp"
 class Job:
     """A loaded job: the model, where its results go, the file and its text; notes: what was found and chosen, or
     replaced in a deck; ignored: what the user had omitted from a deck; own_laws: of a deck's contacts, by name, which exact
-    contact may replace; output: which VTU files are written."""
+    contact may replace; output: which VTU files are written; parameters: as they were used."""
 
     model: Model
     directory: Path
@@ -92,16 +93,22 @@ class Job:
     ignored: tuple[str, ...] = ()
     own_laws: Mapping[str, PressureOverclosure] = field(default_factory=dict)
     output: Output = field(default_factory=Output)
+    parameters: Mapping[str, float] = field(default_factory=dict)
 
 
-def load_job(path: str | Path, refine: int = 0, ignore: Collection[str] = (), soft: bool = False) -> Job:
+def load_job(
+    path: str | Path, refine: int = 0, ignore: Collection[str] = (), soft: bool = False,
+    settings: Mapping[str, float | str] | None = None,
+) -> Job:  # fmt: skip
     """Read a job file, or an Abaqus or CalculiX deck (.inp). Raises InputError that lists every problem with its place.
 
     refine: how often to halve the cells of the meshes that abut makes (InputError for meshes from a file).
     ignore: cards and parameters of a deck to leave out although they change the result. soft: contact with a deck's own
-    pressures over overclosure, not exact."""
+    pressures over overclosure, not exact. settings: parameters in place of the file's."""
     path = Path(path)
     if path.suffix.lower() == DECK:
+        if settings:
+            raise InputError(f"{path}: --set is for job files with [parameters]; a deck has none")
         return _deck(path, refine, ignore, soft)
     if soft:
         raise InputError(f"{path}: --soft-contact is for decks ({DECK}); give the law of each contact in the job file")
@@ -110,6 +117,11 @@ def load_job(path: str | Path, refine: int = 0, ignore: Collection[str] = (), so
     text, data = read_toml(path)
     if data.get("schema") != 1:
         raise InputError(f"{path}: schema: expected 1, got {data.get('schema')!r}; begin the file with 'schema = 1'")
+    try:
+        names = parameters(data, settings or {})
+        data = worked_out(data, names)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
     try:
         file = JobFile.model_validate(data)
     except ValidationError as error:
@@ -120,8 +132,13 @@ def load_job(path: str | Path, refine: int = 0, ignore: Collection[str] = (), so
         output = Output(file.output.steps, tuple(file.output.fields), tuple(file.output.formats))
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
-    notes = (*model.mesh.notes, *resolved.notes)
-    return Job(model, path.parent / file.output.directory, path, text, notes, resolved.entries, output=output)
+    said = [
+        f"parameter {name} = {value:g}{' (set)' if name in (settings or {}) else ''}" for name, value in names.items()
+    ]
+    notes = (*said, *model.mesh.notes, *resolved.notes)
+    return Job(
+        model, path.parent / file.output.directory, path, text, notes, resolved.entries, output=output, parameters=names
+    )
 
 
 def _deck(path: Path, refine: int, ignore: Collection[str], soft: bool) -> Job:

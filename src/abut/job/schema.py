@@ -343,6 +343,7 @@ class JobFile(Table):
     """A whole job file."""
 
     schema_: Literal[1] = Field(alias="schema")
+    parameters: dict[str, Number | str] = {}
     mesh: MeshTable
     model: ModelTable = ModelTable()
     materials: dict[str, Annotated[Materials, Field(discriminator="kind")]]

@@ -1,0 +1,98 @@
+"""Names of solids in the text of a STEP file (ISO 10303-21)."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from abut.errors import InputError
+
+ENTITY = re.compile(rb"#(\d+)\s*=\s*([A-Z0-9_]+)\s*\((.*?)\)\s*;", re.DOTALL)
+TEXT = re.compile(r"'((?:[^']|'')*)'")
+KEPT = {
+    "MANIFOLD_SOLID_BREP", "BREP_WITH_VOIDS", "CLOSED_SHELL", "ORIENTED_CLOSED_SHELL", "ADVANCED_BREP_SHAPE_REPRESENTATION",
+    "SHAPE_REPRESENTATION_RELATIONSHIP", "SHAPE_DEFINITION_REPRESENTATION", "PRODUCT_DEFINITION_SHAPE",
+    "PRODUCT_DEFINITION", "PRODUCT_DEFINITION_FORMATION", "PRODUCT_DEFINITION_FORMATION_WITH_SPECIFIED_SOURCE", "PRODUCT",
+}  # fmt: skip
+SOLIDS = ("MANIFOLD_SOLID_BREP", "BREP_WITH_VOIDS")
+NAMELESS = ("Open CASCADE STEP translator", "NONE", "Solid")  # what programs write where there is no name
+
+
+@dataclass(frozen=True)
+class Entity:
+    kind: str
+    texts: tuple[str, ...]
+    refers: tuple[int, ...]
+
+
+def solid_names(path: Path) -> list[tuple[str, int]]:
+    """Of each solid in its order in the file its name, "" where it has none, and its number of faces: its own name, or else
+    that of the product it is the shape of. Files of other formats have none."""
+    if path.suffix.lower() not in (".step", ".stp"):
+        return []
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror}") from None
+    entities = {}
+    for number, kind, body in ENTITY.findall(data):
+        if kind.decode() in KEPT:
+            text = body.decode("utf-8", "replace")
+            refers = tuple(int(ref) for ref in re.findall(r"#(\d+)", TEXT.sub("", text)))
+            entities[int(number)] = Entity(kind.decode(), tuple(TEXT.findall(text)), refers)
+    products = _products(entities)
+    result = []
+    for number, entity in sorted(entities.items()):
+        if entity.kind in SOLIDS:
+            names = (*entity.texts[:1], products.get(number, ""))
+            name = next((text for text in names if text and not text.startswith(NAMELESS)), "")
+            result.append((name, _faces(entity, entities)))
+    return result
+
+
+def _faces(solid: Entity, entities: Mapping[int, Entity]) -> int:
+    """The number of faces of all shells of a solid."""
+    count = 0
+    for ref in solid.refers:
+        shell = entities.get(ref)
+        if shell is not None and shell.kind == "ORIENTED_CLOSED_SHELL":
+            shell = next((entities[i] for i in shell.refers if i in entities), None)
+        count += len(shell.refers) if shell is not None else 0
+    return count
+
+
+def _products(entities: Mapping[int, Entity]) -> dict[int, str]:
+    """The names of the products that solids are the only shape of."""
+    linked: dict[int, list[int]] = {}  # representations that say the same
+    for entity in entities.values():
+        if entity.kind == "SHAPE_REPRESENTATION_RELATIONSHIP" and len(entity.refers) == 2:
+            a, b = entity.refers
+            linked.setdefault(a, []).append(b)
+            linked.setdefault(b, []).append(a)
+    result = {}
+    for entity in entities.values():
+        if entity.kind != "SHAPE_DEFINITION_REPRESENTATION" or len(entity.refers) != 2:
+            continue
+        name = _product(entity.refers[0], entities)
+        for shape in (entity.refers[1], *linked.get(entity.refers[1], ())):
+            items = entities[shape].refers if shape in entities else ()
+            solids = [item for item in items if item in entities and entities[item].kind in SOLIDS]
+            if len(solids) == 1:
+                result[solids[0]] = name
+    return result
+
+
+def _product(number: int, entities: Mapping[int, Entity]) -> str:
+    """The name of the product that a PRODUCT_DEFINITION_SHAPE is of."""
+    for _ in range(4):  # shape, definition, formation, product
+        entity = entities.get(number)
+        if entity is None:
+            return ""
+        if entity.kind == "PRODUCT":
+            return next((text for text in entity.texts[1::-1] if text), "")
+        if not entity.refers:
+            return ""
+        number = entity.refers[0]
+    return ""
