@@ -84,7 +84,7 @@ def _normals(points: Vector, shell: Shell, which: int) -> tuple[Vector, NDArray[
     if flat.any():
         raise ValueError(which, int(np.flatnonzero(flat)[0]))
     result /= size
-    given = ~np.isnan(shell.normals).any(axis=2)
+    given = np.asarray(~np.isnan(shell.normals).any(axis=2))
     result[given] = shell.normals[given] / np.linalg.norm(shell.normals[given], axis=1, keepdims=True)
     return result, given
 
