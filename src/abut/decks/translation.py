@@ -23,6 +23,7 @@ from abut.decks.plane import plane_of, thickness
 from abut.decks.rigid import join, rigid_bodies, with_parts_coupled
 from abut.decks.rubber import of_rubber
 from abut.decks.springs import spring_notes, springs
+from abut.decks.thin import thickened
 from abut.detection import add_surfaces, find_contacts
 from abut.errors import InputError
 from abut.io.deck import read_deck
@@ -100,9 +101,10 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     for error in unsupported(deck):
         reasons.add(error)
     plane = plane_of(deck)
-    deck = cut(deck)
-    notes = [*deck.notes, *overclosure_notes(deck, soft), *finite_notes(deck), *spring_notes(deck)]
-    notes += [f"{block.code}: {block.type.instead}" for block in deck.blocks if block.type.instead]
+    reasons.tell()
+    notes = [f"{block.code}: {block.type.instead}" for block in deck.blocks if block.type.instead]
+    deck = cut(thickened(deck, is_finite(deck)))
+    notes = [*deck.notes, *notes, *overclosure_notes(deck, soft), *finite_notes(deck), *spring_notes(deck)]
     made = pieces(deck)
     deck = with_parts_coupled(deck, made, notes)
     groups = Groups(deck)
@@ -201,7 +203,7 @@ def _prescribed(
 
 def _idle(deck: Deck, groups: Groups) -> list[str]:
     """Supports that hold nothing: nodes that do not exist, or that nothing is made of; cards without effect."""
-    made = set(groups.used.tolist())
+    made = {*groups.used.tolist(), *deck.thin}
     made |= {n for e in deck.equations for n, _, _ in e.terms}
     made |= deck.references.union(*(spring.ends.ravel().tolist() for spring in deck.springs))
     given = set(deck.nodes.tolist())

@@ -18,8 +18,9 @@ Matrix = NDArray[np.float64]
 Change = Callable[[str], str]  # of the text of a field
 ENDS = {"PART": "ENDPART", "INSTANCE": "ENDINSTANCE", "ASSEMBLY": "ENDASSEMBLY"}
 NAMES = ("NSET", "ELSET", "NAME", "SURFACE")  # parameters with names that belong to the part
-INSIDE = ("NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "SOLIDSECTION", "SPRING", "RIGIDBODY",
-          "COUPLING", "KINEMATIC", "DISTRIBUTING", "KINEMATICCOUPLING", "DISTRIBUTINGCOUPLING")  # fmt: skip
+INSIDE = ("NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "SOLIDSECTION", "SHELLSECTION", "NODALTHICKNESS", "NORMAL",
+          "SPRING", "RIGIDBODY", "COUPLING", "KINEMATIC", "DISTRIBUTING", "KINEMATICCOUPLING",
+          "DISTRIBUTINGCOUPLING")  # fmt: skip
 _READ = {key(name) for name in READ}
 
 
@@ -156,9 +157,12 @@ def _line(card: Card, line: Line, instance: _Instance) -> Line:
         return _changed(line, instance.number)
     if card.key in ("NSET", "ELSET"):
         return _changed(line, instance.member, 2 if card.has("GENERATE") else None)
+    if card.key == "NORMAL":
+        normal = instance.turn @ np.array([line.number(i, "component of the normal", 0.0) for i in (2, 3, 4)])
+        return replace(line, fields=(*map(instance.member, line.fields[:2]), *(repr(float(c)) for c in normal)))
     return (
         _changed(line, instance.member, 1)
-        if card.key in ("SURFACE", "KINEMATICCOUPLING", "DISTRIBUTINGCOUPLING")
+        if card.key in ("SURFACE", "NODALTHICKNESS", "KINEMATICCOUPLING", "DISTRIBUTINGCOUPLING")
         else line
     )
 

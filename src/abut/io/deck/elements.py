@@ -13,12 +13,22 @@ class ElementType:
     """kind: the cell (``abut.cells``); plane: "strain", "stress", "axisymmetric", or None in 3D; integration as in
     ``abut.Solid``, measured on single and few elements of CalculiX 2.20: its C3D8, CPE4 and CAX4 are fully integrated,
     its C3D10, C3D15 and triangles with 6 nodes have 4, 9 and 3 points. instead: what abut takes in place of the
-    element's own formulation, "" where it is the same."""
+    element's own formulation, "" where it is the same. thin: "shell", a cell of a surface that a thickness makes solid, or
+    ""."""
 
     kind: str
     plane: str | None
     integration: str
     instead: str = ""
+    thin: str = ""
+
+    @property
+    def solid(self) -> str:
+        """The cell that is solved, of a thin element that which its thickness makes of it."""
+        return _EXPANDED[self.kind] if self.thin else self.kind
+
+
+_EXPANDED = {"tri3": "wedge15", "tri6": "wedge15", "quad4": "hex20", "quad8": "hex20"}
 
 
 _HOURGLASS = "instead of one point with hourglass control; stiffer in bending"
@@ -66,7 +76,21 @@ def _types() -> dict[str, ElementType]:
         result |= {f"{prefix}{code}": ElementType("quad4", plane, *_MEAN) for code in ("4H", "4RH", "4IH")}
         result |= {f"{prefix}{code}": ElementType("quad8", plane, *_POINTS) for code in ("8H", "8RH")}
         result |= {f"{prefix}{code}": ElementType("tri6", plane, *_POINTS) for code in ("6H", "6MH")}
-    return result
+    return result | _shells()
+
+
+def _shells() -> dict[str, ElementType]:
+    """As CalculiX expands them: S8 to C3D20, S8R to C3D20R, S6 to C3D15; linear ones get nodes in the middle of their edges,
+    as one linear solid through the thickness would lock in bending."""
+    middles = "nodes in the middle of its edges, expanded to {} instead of {}; less stiff in bending"
+    return {
+        "S3": ElementType("tri3", None, "reduced", middles.format("C3D15", "C3D6"), "shell"),
+        "S4": ElementType("quad4", None, "reduced", middles.format("C3D20R", "C3D8I"), "shell"),
+        "S4R": ElementType("quad4", None, "reduced", middles.format("C3D20R", "C3D8R"), "shell"),
+        "S6": ElementType("tri6", None, "reduced", "", "shell"),
+        "S8": ElementType("quad8", None, "full", "", "shell"),
+        "S8R": ElementType("quad8", None, "reduced", "", "shell"),
+    }
 
 
 ELEMENTS = _types()

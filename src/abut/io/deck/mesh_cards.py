@@ -16,6 +16,7 @@ from abut.io.deck.reasons import Place, Reasons
 from abut.io.deck.record import Block, Faces, Numbers
 from abut.io.deck.spring_cards import ELEMENTS as SPRINGS
 
+SIDES = {"SNEG": "S1", "SPOS": "S2"}  # of shells
 MOST = 10_000_000  # numbers in one GENERATE, or elements of a set, beyond which a deck is wrong
 
 
@@ -60,7 +61,8 @@ class Names:
 
 @dataclass(frozen=True)
 class MeshCards:
-    """What the mesh cards say; see ``record.Deck``. numbers: of all nodes; kinds: cell type of each element."""
+    """What the mesh cards say; see ``record.Deck``. numbers: of all nodes; kinds: cell type of each element,
+    expanded where it is thin; shells: their numbers."""
 
     nodes: Numbers
     points: np.ndarray[tuple[int, ...], np.dtype[np.float64]]
@@ -70,6 +72,7 @@ class MeshCards:
     surfaces: Mapping[str, Faces]
     numbers: frozenset[int]
     kinds: Mapping[int, str]
+    shells: frozenset[int]
     virtual: frozenset[int] = frozenset()  # nodes that only *PRE-TENSION SECTION names
 
     def existing(self, line: Line, i: int, ordered: bool = False) -> Numbers:
@@ -129,7 +132,7 @@ def mesh_cards(cards: Iterable[Card], notes: list[str], reasons: Reasons) -> Mes
     ids = np.array(sorted(nodes), dtype=np.int64)
     points = np.array([nodes[i] for i in ids.tolist()], dtype=float).reshape(-1, 3)
     places = {key(card.get("TYPE") or ""): card.place for card in reversed(cards) if card.key == "ELEMENT"}
-    kinds = {number: ELEMENTS[code].kind for number, (code, _) in elements.items()}
+    kinds = {number: ELEMENTS[code].solid for number, (code, _) in elements.items()}
     return MeshCards(
         ids,
         points,
@@ -139,6 +142,7 @@ def mesh_cards(cards: Iterable[Card], notes: list[str], reasons: Reasons) -> Mes
         _named(surfaces),
         frozenset(nodes),
         kinds,
+        frozenset(number for number, (code, _) in elements.items() if ELEMENTS[code].thin),
         virtual,
     )
 
@@ -275,8 +279,9 @@ def _surface(
         face = 0
         if line.text(1):
             label = line.text(1).upper()
-            kinds = {ELEMENTS[elements[e][0]].kind for e in members.tolist()}
-            face = face_number(line, label, "S", kinds)
+            types = [ELEMENTS[elements[e][0]] for e in members.tolist()]
+            label = SIDES.get(label, label) if all(t.thin for t in types) else label
+            face = face_number(line, label, "S", {t.solid for t in types})
         faces.append((members, face))
     return Faces(name, card.place, tuple(faces))
 

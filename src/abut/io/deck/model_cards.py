@@ -98,29 +98,56 @@ def _density(card: Card) -> float:
 def sections(
     cards: Sequence[Card], mesh: MeshCards, known: Mapping[str, Material] | None, reasons: Reasons
 ) -> tuple[Section, ...]:
-    """Solid sections, without materials where ``known`` is None; later ones override earlier ones for elements that stand
-    in both, as in Abaqus and CalculiX."""
+    """Solid and shell sections, without materials where ``known`` is None; later ones override earlier ones for elements
+    that stand in both, as in Abaqus and CalculiX."""
     result: list[Section] = []
     axes = {name.upper(): card for card in of(cards, "ORIENTATION") if (name := card.get("NAME"))}
-    for card in of(cards, "SOLID SECTION"):
+    for card in (card for card in cards if card.key in ("SOLIDSECTION", "SHELLSECTION")):
         with reasons.gathered():
-            section = _section(card, mesh, known, axes)
+            read = shell_section if card.key == "SHELLSECTION" else _section
+            section = read(card, mesh, known, axes)
             result = [replace(s, elements=np.setdiff1d(s.elements, section.elements)) for s in result]
             result.append(section)
     return tuple(s for s in result if len(s.elements))
 
 
 def _section(card: Card, mesh: MeshCards, known: Mapping[str, Material] | None, axes: Mapping[str, Card]) -> Section:
-    name, material = card.need("ELSET"), card.need("MATERIAL")
-    if name.upper() not in mesh.element_sets.sets:
-        raise card.unknown(f"no element set named {name!r}{mesh.element_sets.like(name)}")
-    if known is not None and material.upper() not in known:
-        raise card.unknown(f"no material named {material!r}{nearest(material, [m.name for m in known.values()])}")
     if card.has("NODAL THICKNESS"):
         raise card.error("NODALTHICKNESS: a thickness for each node is not supported; give the section one thickness")
     thickness = card.lines[0].number(0, "thickness", 1.0) if card.lines else 1.0
     if not thickness > 0.0:
         raise card.lines[0].error(f"thickness: expected a number > 0, got {thickness:g}")
+    return _of_elements(card, mesh, known, axes, thickness)
+
+
+def shell_section(
+    card: Card, mesh: MeshCards, known: Mapping[str, Material] | None, axes: Mapping[str, Card]
+) -> Section:
+    """One *SHELL SECTION. Raises InputError for a thickness that is none, and for layers."""
+    if card.has("COMPOSITE"):
+        raise card.error("COMPOSITE: layers are not supported; give one material and the whole thickness")
+    thickness = 0.0
+    if not card.has("NODAL THICKNESS"):
+        line = card.first("thickness")
+        thickness = line.number(0, "thickness")
+        if not thickness > 0.0:
+            raise line.error(f"thickness: expected a number > 0, got {thickness:g}")
+    sides = {"SPOS": 0.5, "SNEG": -0.5}
+    text = (card.get("OFFSET") or "0").upper()
+    offset = sides.get(text, as_float(text))
+    if offset is None:
+        raise card.error(f"OFFSET={text}: expected a number (over the thickness), SPOS or SNEG")
+    return replace(_of_elements(card, mesh, known, axes, thickness), offset=offset)
+
+
+def _of_elements(
+    card: Card, mesh: MeshCards, known: Mapping[str, Material] | None, axes: Mapping[str, Card], thickness: float
+) -> Section:
+    name, material = card.need("ELSET"), card.need("MATERIAL")
+    if name.upper() not in mesh.element_sets.sets:
+        raise card.unknown(f"no element set named {name!r}{mesh.element_sets.like(name)}")
+    if known is not None and material.upper() not in known:
+        raise card.unknown(f"no material named {material!r}{nearest(material, [m.name for m in known.values()])}")
     elements, spelled = mesh.element_sets.sets[name.upper()], mesh.element_sets.spelled[name.upper()]
     properties = (
         known[material.upper()] if known is not None else Material(material, NO_CONSTANTS, 0.0, Expansion(), card.place)

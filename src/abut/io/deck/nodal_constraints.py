@@ -14,6 +14,7 @@ from abut.io.deck.faces import connectivity
 from abut.io.deck.groups import Groups
 from abut.io.deck.reasons import DeckError, Place
 from abut.io.deck.record import CyclicSymmetry, Deck, Numbers, Transform
+from abut.io.deck.thin_nodes import means, spread, straight, turns
 from abut.io.deck.time_histories import Course, combine, courses, zero
 
 Vector = NDArray[np.float64]
@@ -22,6 +23,7 @@ TINY = 1e-12  # of the largest coefficient: a term that is none
 NEAR = 1e-3  # of the surface: distance within which nodes on two sides of a sector count as the same
 
 Point = tuple[int, int]  # node, axis 0..2
+NO_DRILL = "has a moment about the normal of its shell, which nothing resists"
 
 
 @dataclass(frozen=True)
@@ -47,13 +49,16 @@ def bonds(deck: Deck, groups: Groups, plane: str | None) -> Bonds:
     _check_equations(deck)
     axes = 2 if plane else 3
     given = {(int(n), int(d) - 1): c for (n, d), c in courses(deck, "boundary").items() if n not in apart}
+    pushed = {(int(n), int(d) - 1): c for (n, d), c in courses(deck, "force").items() if n not in apart}
+    named = {n for n, _ in (*given, *pushed)} | {n for e in deck.equations for n, _, _ in e.terms}
+    local = _local_axes(deck, named)
+    thin, given, pushed = _of_thin(deck, given, pushed, local, used)
     for point, course in given.items():
         if point[1] >= 3 and not zero(course):
             raise _nothing(
                 deck, "boundary", point, f"cannot turn (direction {point[1] + 1}); only rigid bodies and couplings do"
             )
     supported = {point: course for point, course in given.items() if point[1] < 3}
-    pushed = {(int(n), int(d) - 1): c for (n, d), c in courses(deck, "force").items() if n not in apart}
     for point, course in pushed.items():
         if point[1] >= 3 and not zero(course):
             raise _nothing(
@@ -63,18 +68,17 @@ def bonds(deck: Deck, groups: Groups, plane: str | None) -> Bonds:
                 f"carries no moment (direction {point[1] + 1}); only rigid bodies and couplings do",
             )
     pushed = {point: course for point, course in pushed.items() if point[1] < 3}
-    named = {n for n, _ in (*supported, *pushed)} | {n for e in deck.equations for n, _, _ in e.terms}
-    local = _local_axes(deck, named)
     supports, oblique = _supports(deck, {p: c for p, c in supported.items() if p[0] in used}, local, axes)
     forces = _spread({p: c for p, c in pushed.items() if p[0] in used}, local)
-    equations = [Bond(_global(e.terms, local), NOTHING, e.place) for e in deck.equations]
+    own = {node: axes for node, axes in local.items() if node not in deck.thin or node in used}
+    equations = [*thin.bonds, *(Bond(_global(e.terms, own), NOTHING, e.place) for e in deck.equations)]
     for symmetry in deck.cyclic:
         equations += _cyclic(deck, groups, symmetry)
     virtual = _Virtual(
         {p: c for p, c in supported.items() if p[0] not in used}, {p: c for p, c in pushed.items() if p[0] not in used}
     )
     equations, more = _without_virtual(equations, virtual, used, deck)
-    for point, course in more.items():
+    for point, course in (*more.items(), *thin.forces.items()):
         forces[point] = combine([(1.0, forces.get(point, NOTHING)), (1.0, course)])
     known = dict(supports)
     if plane == "axisymmetric":
@@ -89,6 +93,46 @@ class _Virtual:
 
     supported: Mapping[Point, Course]
     pushed: Mapping[Point, Course]
+
+
+@dataclass(frozen=True)
+class _OfThin:
+    """What is said of nodes of shells, of the nodes that stand for them."""
+
+    bonds: tuple[Bond, ...]
+    forces: Mapping[Point, Course]
+
+
+def _of_thin(
+    deck: Deck, given: dict[Point, Course], pushed: dict[Point, Course], local: Mapping[int, Vector], used: set[int]
+) -> tuple[_OfThin, dict[Point, Course], dict[Point, Course]]:
+    """What nodes of shells become, and what is left of supports and forces. Nodes that are held, in equations, or shared
+    with solids keep their displacement as an unknown."""
+    if not deck.thin:
+        return _OfThin((), {}), given, pushed
+    turned = {point: c for point, c in given.items() if point[0] in deck.thin and point[1] >= 3}
+    bonds = [
+        Bond(terms, course, _place(deck, "boundary", (node, 0)))
+        for node, (terms, course) in turns(deck.thin, turned, local)
+    ]
+    kept = {point: c for point, c in given.items() if point not in turned}
+    known = {point: None for point in kept if point[0] in deck.thin and point[0] not in used}
+    places = {node: e.place for e in deck.equations for node, _, _ in e.terms if node in deck.thin}
+    known |= {(node, axis): None for node in {*places, *(used & deck.thin.keys())} for axis in range(3)}
+    own = {node: axes for node, axes in local.items() if node not in used}
+    place = deck.blocks[0].place
+    bonds += [Bond(terms, NOTHING, places.get(next(iter(terms))[0], place)) for terms in means(deck.thin, known, own)]
+    direct = {point: c for point, c in pushed.items() if point[0] in deck.thin and point not in known and not zero(c)}
+    loaded = [point for point in direct if point[1] < 3]
+    bonds += [Bond(terms, NOTHING, place) for terms in straight(deck.thin, loaded, local)]
+    try:
+        forces = spread(deck.thin, direct, local)
+    except ValueError as error:
+        raise _nothing(deck, "force", error.args, NO_DRILL) from None
+    rest = {
+        point: c for point, c in pushed.items() if point not in direct and (point[0] not in deck.thin or point[1] < 3)
+    }
+    return _OfThin(tuple(bonds), forces), kept, rest
 
 
 def _check_equations(deck: Deck) -> None:

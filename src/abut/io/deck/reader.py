@@ -21,13 +21,15 @@ from abut.io.deck.model_cards import (
     sections,
     transforms,
 )
-from abut.io.deck.reasons import Reasons
+from abut.io.deck.reasons import DeckError, Reasons
 from abut.io.deck.record import Amplitude, Deck, Prescribed
 from abut.io.deck.repeated import repeated_members, without_repeated
+from abut.io.deck.shell_cards import nodal_thickness, normals
 from abut.io.deck.spring_cards import springs
 from abut.io.deck.step_cards import KIND, amplitudes, initial_temperature, prescribed, split_steps, steps
 from abut.io.deck.supported import NEEDED, opens, sift
 
+ALONE = "shells are read with the whole deck only; run the deck itself, or give job files a mesh of solids"
 MESH = ("NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "SOLIDSECTION")
 
 
@@ -77,6 +79,8 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
         ignored=sifted.ignored,
         couplings=couplings(cards, mesh, reasons),
         springs=springs(cards, mesh.numbers, reasons),
+        thicknesses=nodal_thickness(cards, mesh, reasons),
+        normals=normals(cards, mesh, reasons),
     )
     reasons.tell()
     return deck
@@ -93,6 +97,9 @@ def read_mesh_only(path: Path) -> Deck:
     cards = without_repeated(sifted.cards, notes)
     mesh = mesh_cards(cards, notes, reasons)
     found = sections(cards, mesh, None, reasons)
+    for block in mesh.blocks:
+        if block.type.thin:
+            reasons.add(DeckError(block.place, f"*ELEMENT: {block.code}: {ALONE}"))
     reasons.tell()
     inside = {(card.get("SURFACE") or "").upper() for card in every if card.key == "PRE-TENSIONSECTION"}
     return Deck(

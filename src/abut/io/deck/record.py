@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -108,7 +108,9 @@ class Material:
 
 @dataclass(frozen=True)
 class Section:
-    """name: the element set; thickness: of plane elements; orientation: None for the global axes."""
+    """name: the element set; thickness: of plane elements and shells, 0 of shells whose nodes have
+    one each; orientation: None for the global axes; offset: of a
+    shell, its nodes from the mid-surface along the normal over the thickness."""
 
     name: str
     elements: Numbers
@@ -116,6 +118,19 @@ class Section:
     thickness: float
     place: Place
     orientation: Orientation | None = None
+    offset: float = 0.0
+
+
+@dataclass(frozen=True)
+class Thin:
+    """Nodes of solids that stand for a node of a shell: its displacement is their mean, its turn that of the line from the
+    first to the last, ``along`` the unit vector from the former to the latter and ``apart`` their distance; of a knot, whose
+    turn is that of a coupling, None. middle: the node between them, which goes with one that is held, or 0."""
+
+    nodes: tuple[int, ...]
+    along: tuple[float, float, float] | None = None
+    apart: float = 0.0
+    middle: int = 0
 
 
 @dataclass(frozen=True)
@@ -257,7 +272,8 @@ class PreTension:
 @dataclass(frozen=True)
 class Prescribed:
     """A value at keys: (node, direction) for supports and forces, (element, face) for pressures, (node,) for temperatures,
-    (number of a pair, 0) for the overlap that contact allows; face 0 with ``vector``: gravity on the element, or a
+    (number of a pair, 0) for the overlap that contact allows; a temperature's ``vector`` begins with its slope along the
+    normal of shells; face 0 with ``vector``: gravity on the element, or a
     centrifugal force, a point of whose axis and its direction it has. amplitude: name, or "" for the ramp."""
 
     kind: str  # boundary | force | pressure | gravity | centrifugal | temperature | interference | shrink
@@ -305,7 +321,8 @@ class Amplitude:
 class Deck:
     """A whole deck. nodes (n,) sorted; points (n, 3); sets and surfaces by name as the deck first spells it; fixed: supports
     outside the steps; initial: node -> temperature; quiet, ignored: see ``supported.Sifted``; small_sliding: a
-    contact pair asks for it."""
+    contact pair asks for it; thicknesses: of shells at nodes; normals: of shells at (element, node); thin: what stands for
+    the nodes of shells once they are expanded."""
 
     path: str
     nodes: Numbers
@@ -332,6 +349,9 @@ class Deck:
     small_sliding: bool = False
     couplings: tuple[Coupling, ...] = ()
     springs: tuple[Spring, ...] = ()
+    thicknesses: Mapping[int, float] = field(default_factory=dict)
+    normals: Mapping[tuple[int, int], tuple[float, float, float]] = field(default_factory=dict)
+    thin: Mapping[int, Thin] = field(default_factory=dict)
 
     @property
     def references(self) -> frozenset[int]:

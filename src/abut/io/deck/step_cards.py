@@ -206,6 +206,8 @@ def _distributed(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed
                 "the direction of the axis is missing; write set, CENTRIF, square of the speed, point, direction"
             )
         return [Prescribed("centrifugal", elements, (0,), value, amplitude, line.place, (*at, *axis))]
+    if label == "P" and all(number in mesh.shells for number in elements.tolist()):
+        label = "P1"  # on the negative side, so that it pushes along the normal
     if not label.startswith("P") or label == "P":
         raise line.error(f"load {label!r} is not supported; P1, P2, ... (pressure on a face), GRAV and CENTRIF are")
     kinds = {mesh.kinds[number] for number in elements.tolist()}
@@ -230,7 +232,8 @@ def _on_surface(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed]
 
 def _temperature(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed]:
     nodes = mesh.existing(line, 0)
-    return [Prescribed("temperature", nodes, (0,), line.number(1, "temperature"), amplitude, line.place)]
+    slope = (line.number(2, "gradient through the thickness", 0.0), 0.0, 0.0)
+    return [Prescribed("temperature", nodes, (0,), line.number(1, "temperature"), amplitude, line.place, slope)]
 
 
 _LINES: Mapping[str, Callable[[Line, str, MeshCards], list[Prescribed]]] = {

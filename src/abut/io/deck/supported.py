@@ -35,6 +35,9 @@ READ: dict[str, tuple[str, ...]] = {
     "DENSITY": (),
     "EXPANSION": ("TYPE", "ZERO"),
     "ORIENTATION": ("NAME", "SYSTEM", "DEFINITION", "LOCAL DIRECTIONS"),
+    "NODAL THICKNESS": (),
+    "NORMAL": (),
+    "SHELL SECTION": ("ELSET", "MATERIAL", "ORIENTATION", "OFFSET", "NODAL THICKNESS", "COMPOSITE"),
     "SOLID SECTION": ("ELSET", "MATERIAL", "ORIENTATION", "NODAL THICKNESS", "CONTROLS"),
     "BOUNDARY": ("OP", "AMPLITUDE", "TYPE", "LOAD CASE"),
     "CLOAD": ("OP", "AMPLITUDE", "LOAD CASE"),
@@ -141,12 +144,9 @@ REFUSED: dict[str, str] = {
     "NCOPY": f"generated nodes are not read{_WRITE}",
     "NFILL": f"generated nodes are not read{_WRITE}",
     "NGEN": f"generated nodes are not read{_WRITE}",
-    "NODAL THICKNESS": "a thickness for each node is not supported; give the section one thickness",
-    "NORMAL": "normals given by hand are not read; abut takes them from the mesh",
     "RADIATE": "radiation belongs to heat transfer, which abut does not solve",
     "RATE DEPENDENT": f"rates are not supported{_MATERIAL}",
     "REFINE MESH": "refinement is not supported; refine the mesh in the preprocessor",
-    "SHELL SECTION": "shells are not supported; model the part with solid elements",
     "SUBMODEL": "submodels are not supported; give the displacements with *BOUNDARY",
     "SYSTEM": f"nodes in a system of their own are not read{_WRITE}",
     "USER MATERIAL": f"user materials are not supported{_MATERIAL}",
@@ -175,7 +175,7 @@ GENERATED = {  # nodes and elements that do not stand in the deck, or under numb
 }
 NEEDED = {  # leaving these out would leave no deck
     *GENERATED,
-    *(key(name) for name in ("BEAM SECTION", "MEMBRANE SECTION", "SHELL SECTION")),
+    *(key(name) for name in ("BEAM SECTION", "MEMBRANE SECTION")),
 }
 
 POINT_ELEMENTS = ("DCOUP2D", "DCOUP3D")  # the reference nodes of *DISTRIBUTING COUPLING

@@ -1,0 +1,228 @@
+"""Shells of a deck expanded into solids, as CalculiX does it: nothing after it knows that they were shells.
+
+The nodes of the shell stay, as nodes of no element: what is said of them is said of the solid's nodes that stand for
+them (``io.deck.thin_nodes``), or of a rigid body of these (a knot), where the shell has several normals at a node."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.decks.shell_edges import quadratic
+from abut.io.deck.reasons import DeckError
+from abut.io.deck.record import Block, Coupling, Deck, Faces, Numbers, Prescribed, Section, Thin
+from abut.mesh.thin.shells import Expanded, Shell, expand
+
+Vector = NDArray[np.float64]
+
+
+def is_thin(deck: Deck) -> bool:
+    """Whether the deck has shells."""
+    return any(block.type.thin for block in deck.blocks)
+
+
+def thickened(deck: Deck, finite: bool) -> Deck:
+    """The deck with its shells expanded. ``finite``: at large displacements.
+
+    Raises InputError for shells without a thickness or with cells that have no area, and for springs on their nodes."""
+    if not is_thin(deck):
+        return deck
+    deck = quadratic(deck)
+    blocks = [block for block in deck.blocks if block.type.thin]
+    shells = [
+        Shell(
+            block.type.kind,
+            np.searchsorted(deck.nodes, block.nodes),
+            _thickness(deck, block),
+            _offsets(deck, block),
+            _normals(deck, block),
+        )
+        for block in blocks
+    ]
+    try:
+        solid = expand(deck.points, shells)
+    except ValueError as error:
+        shell, cell = error.args
+        block = blocks[shell]
+        raise DeckError(
+            block.place, f"*ELEMENT: shell {block.ids[cell]} has no area at one of its nodes; mend the mesh"
+        ) from None
+    return _with_solids(deck, blocks, solid, finite)
+
+
+def _with_solids(deck: Deck, blocks: list[Block], solid: Expanded, finite: bool) -> Deck:
+    used = np.unique(np.concatenate([cells.ravel() for _, cells in solid.cells]))
+    taken = [int(deck.nodes.max()), *deck.references, *(section.node for section in deck.pretension)]
+    number = np.full(len(solid.points), -1, np.int64)
+    number[used] = max(taken) + 1 + np.arange(len(used))
+    made = iter(
+        replace(block, type=replace(block.type, kind=kind, thin=""), nodes=number[cells])
+        for block, (kind, cells) in zip(blocks, solid.cells)
+    )
+    thin = _thin(deck, solid, number)
+    if finite:
+        _check_turned(deck, thin)
+    knots = [node for node, each in thin.items() if each.along is None]
+    stand_for = _every(deck, solid, number)
+    deck = replace(
+        deck,
+        nodes=np.concatenate([deck.nodes, number[used]]),
+        points=np.concatenate([deck.points, solid.points[used]]),
+        blocks=tuple(next(made) if block.type.thin else block for block in deck.blocks),
+        thin={node: each for node, each in thin.items() if node not in knots},
+    )
+    at = np.einsum(
+        "nd,nd->n", solid.points - np.repeat(deck.points[solid.node], 3, axis=0), np.repeat(solid.normal, 3, axis=0)
+    )
+    heights = dict(zip(number.tolist(), at.tolist()))
+    deck = _renamed(deck, stand_for, heights)
+    couplings = [_knot(deck, blocks[0], node, stand_for[node]) for node in knots]
+    return replace(deck, couplings=(*deck.couplings, *couplings))
+
+
+def _knot(deck: Deck, block: Block, node: int, nodes: Numbers) -> Coupling:
+    return Coupling(f"knot {node}", False, node, "", nodes, frozenset(range(1, 7)), None, block.place)
+
+
+def _thin(deck: Deck, solid: Expanded, number: Numbers) -> dict[int, Thin]:
+    """What stands for each node of the deck that shells have."""
+    result: dict[int, Thin] = {}
+    for i in range(len(solid.node)):
+        node = int(deck.nodes[solid.node[i]])
+        ends = (int(number[3 * i]), int(number[3 * i + 2]))
+        if node in result:
+            result[node] = Thin((*result[node].nodes, *ends))
+        else:
+            x, y, z = solid.normal[i].tolist()
+            middle = max(int(number[3 * i + 1]), 0)
+            result[node] = Thin(ends, (x, y, z), float(solid.thickness[i]), middle)
+    return result
+
+
+def _every(deck: Deck, solid: Expanded, number: Numbers) -> dict[int, Numbers]:
+    """All nodes through the thickness at each node of the deck that shells have."""
+    result: dict[int, list[int]] = {}
+    for i in range(len(solid.node)):
+        through = number[3 * i : 3 * i + 3]
+        result.setdefault(int(deck.nodes[solid.node[i]]), []).extend(through[through >= 0].tolist())
+    return {node: np.array(nodes, np.int64) for node, nodes in result.items()}
+
+
+def _section_of(deck: Deck, block: Block) -> list[Section]:
+    """Of each element of a block. Raises InputError for one without a section."""
+    by_number = {number: section for section in deck.sections for number in section.elements.tolist()}
+    for number in block.ids.tolist():
+        if number not in by_number:
+            raise DeckError(block.place, f"*ELEMENT: element {number} without *SHELL SECTION; give its set a section")
+    return [by_number[number] for number in block.ids.tolist()]
+
+
+def _offsets(deck: Deck, block: Block) -> Vector:
+    return np.array([section.offset for section in _section_of(deck, block)])
+
+
+def _thickness(deck: Deck, block: Block) -> Vector:
+    """At each node of each element: that of the section, or of the nodes where it says so."""
+    own = np.zeros(len(deck.nodes))
+    for node, value in deck.thicknesses.items():
+        own[np.searchsorted(deck.nodes, node)] = value
+    nodes = np.searchsorted(deck.nodes, block.nodes)
+    sections = np.array([section.thickness for section in _section_of(deck, block)])
+    result = np.where(sections[:, None] > 0.0, sections[:, None], own[nodes])
+    bare = np.argwhere(result <= 0.0)
+    if len(bare):
+        element = int(block.ids[bare[0][0]])
+        raise DeckError(
+            block.place,
+            f"*ELEMENT: shell {element} has no thickness at one of its nodes; give it in *NODAL THICKNESS",
+        )
+    return np.asarray(result)
+
+
+def _normals(deck: Deck, block: Block) -> Vector:
+    """Those that are given, NaN elsewhere."""
+    result = np.full((*block.nodes.shape, 3), np.nan)
+    if not deck.normals:
+        return result
+    for i, (element, own) in enumerate(zip(block.ids.tolist(), block.nodes.tolist())):
+        for k, node in enumerate(own):
+            result[i, k] = deck.normals.get((element, node), np.nan)
+    return result
+
+
+def _check_turned(deck: Deck, thin: Mapping[int, Thin]) -> None:
+    """Raise InputError for moments, and turns other than zero, at nodes with one normal, which large turns would bend."""
+    for value in (*deck.fixed, *(value for step in deck.steps for value in step.values)):
+        turns = value.kind in ("boundary", "force") and value.value != 0.0 and max(value.directions) > 3
+        for node in value.numbers.tolist() if turns else ():
+            if node in thin and thin[node].along is not None:
+                what = "*CLOAD: moments" if value.kind == "force" else "*BOUNDARY: turns other than zero"
+                raise DeckError(
+                    value.place,
+                    f"{what} at nodes of shells need small displacements; leave NLGEOM out, or couple the nodes of the edge "
+                    "to a node of its own (*COUPLING) and move that",
+                )
+
+
+def _renamed(deck: Deck, stand_for: Mapping[int, Numbers], heights: Mapping[int, float]) -> Deck:
+    """The deck with nodes of solids in sets and surfaces of nodes, rigid bodies, couplings and temperatures. heights: along
+    the normal over the shell's nodes."""
+    shells = np.array(sorted(stand_for), np.int64)
+
+    def all_of(nodes: Numbers) -> Numbers:
+        """With those that stand for nodes of shells in their place."""
+        if not np.isin(nodes, shells).any():
+            return nodes
+        solids = set(np.concatenate([block.nodes.ravel() for block in deck.blocks]).tolist())
+        kept = [n for n in nodes.tolist() if n not in stand_for or n in solids]
+        new = [stand_for[n] for n in nodes.tolist() if n in stand_for]
+        return np.unique(np.concatenate([np.array(kept, np.int64), *new]))
+
+    def of_temperature(value: Prescribed) -> list[Prescribed]:
+        if value.kind != "temperature":
+            return [value]
+        if not value.vector[0]:
+            return [replace(value, numbers=all_of(value.numbers))]
+        return [_warm(value, n, heights.get(n, 0.0)) for n in all_of(value.numbers).tolist()]
+
+    def of_surface(surface: Faces) -> Faces:
+        return surface if surface.nodes is None else replace(surface, nodes=all_of(surface.nodes))
+
+    for spring in deck.springs:
+        if np.isin(spring.ends, shells).any():
+            raise DeckError(spring.place, "*SPRING: springs on nodes of shells are not supported; use nodes of solids")
+    initial = dict(deck.initial)
+    for node, nodes in stand_for.items():
+        if node in initial:
+            initial |= dict.fromkeys(nodes.tolist(), initial[node])
+    return replace(
+        deck,
+        node_sets={name: all_of(nodes) for name, nodes in deck.node_sets.items()},
+        surfaces={name: of_surface(surface) for name, surface in deck.surfaces.items()},
+        rigid=tuple(replace(body, nodes=all_of(body.nodes)) for body in deck.rigid),
+        couplings=tuple(_of_solids(bound, stand_for, all_of(bound.nodes)) for bound in deck.couplings),
+        initial=initial,
+        steps=tuple(
+            replace(step, values=tuple(v for value in step.values for v in of_temperature(value)))
+            for step in deck.steps
+        ),
+    )
+
+
+def _warm(value: Prescribed, node: int, height: float) -> Prescribed:
+    """The temperature at a node at a height along the normal over the shell's nodes."""
+    return replace(value, numbers=np.array([node], np.int64), value=value.value + height * value.vector[0])
+
+
+def _of_solids(bound: Coupling, stand_for: Mapping[int, Numbers], nodes: Numbers) -> Coupling:
+    """A coupling of the nodes that stand for its own; they share the weight of the node."""
+    if bound.weights is None or np.array_equal(nodes, bound.nodes):
+        return replace(bound, nodes=nodes)
+    weights = dict.fromkeys(nodes.tolist(), 0.0)
+    for node, weight in zip(bound.nodes.tolist(), bound.weights.tolist()):
+        own = stand_for.get(node, np.array([node])).tolist()
+        weights |= {n: weights[n] + weight / len(own) for n in own}
+    return replace(bound, nodes=nodes, weights=np.array([weights[n] for n in nodes.tolist()]))

@@ -1,0 +1,109 @@
+"""What is prescribed at nodes of shells, said of the nodes of the solids that stand for them.
+
+With u_b and u_t of the nodes at both sides, n the normal and h the thickness, the displacement of the shell's node is
+(u_b + u_t) / 2, and its turn n x (u_t - u_b) / h, beside one about n that nothing resists."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.io.deck.record import Thin
+from abut.io.deck.time_histories import Course, combine
+
+Vector = NDArray[np.float64]
+Point = tuple[int, int]  # node, axis 0..2; turns 3..5
+SMALL = 1e-9  # coefficients that are none, and the part of a moment along the normal
+Row = tuple[dict[Point, float], Course]
+
+
+def means(thin: Mapping[int, Thin], wanted: Collection[Point], local: Mapping[int, Vector]) -> list[dict[Point, float]]:
+    """Terms whose sum is zero: a node's displacement along an axis (of its own where it has some) less the mean of those
+    that stand for it, and less that of the node in the middle; for those ``wanted``."""
+    result = []
+    for node, axis in wanted:
+        row = local[node][axis] if node in local else np.eye(3)[axis]
+        terms: dict[Point, float] = {(node, axis): 1.0}
+        terms |= {(n, k): -c for (n, k), c in _shares(thin[node], row).items()}
+        result.append(terms)
+        if middle := thin[node].middle:
+            across = {(middle, int(k)): -float(row[k]) for k in np.flatnonzero(np.abs(row) > SMALL)}
+            result.append({(node, axis): 1.0} | across)
+    return result
+
+
+def straight(
+    thin: Mapping[int, Thin], wanted: Collection[Point], local: Mapping[int, Vector]
+) -> list[dict[Point, float]]:
+    """Terms whose sum is zero: the displacement along an axis of the node in the middle less the mean of those that stand
+    for the shell's node."""
+    result = []
+    for node, axis in wanted:
+        each = thin[node]
+        if each.middle:
+            row = local[node][axis] if node in local else np.eye(3)[axis]
+            across = {(each.middle, int(k)): float(row[k]) for k in np.flatnonzero(np.abs(row) > SMALL)}
+            result.append(across | {point: -c for point, c in _shares(each, row).items()})
+    return result
+
+
+def spread(
+    thin: Mapping[int, Thin], pushed: Mapping[Point, Course], local: Mapping[int, Vector]
+) -> dict[Point, Course]:
+    """Forces and moments at nodes of shells as forces at those that stand for them. Raises ValueError for a moment about
+    the normal: its argument is the node and the direction."""
+    parts: dict[Point, list[tuple[float, Course]]] = {}
+    for (node, direction), course in pushed.items():
+        axes = local.get(node, np.eye(3))
+        each = thin[node]
+        if direction < 3:
+            shares = _shares(each, axes[direction])
+        else:
+            moment = axes[direction - 3]
+            if each.along is None or abs(float(moment @ np.array(each.along))) > SMALL:
+                raise ValueError(node, direction)
+            shares = _difference(each, np.cross(moment, np.array(each.along)))
+        for point, share in shares.items():
+            parts.setdefault(point, []).append((share, course))
+    return {point: combine(terms) for point, terms in parts.items()}
+
+
+def turns(
+    thin: Mapping[int, Thin], given: Mapping[Point, Course], local: Mapping[int, Vector]
+) -> list[tuple[int, Row]]:
+    """Rows (node, (terms, course)) that prescribe turns; the turn about the normal, which is free, is eliminated."""
+    by_node: dict[int, dict[int, Course]] = {}
+    for (node, direction), course in given.items():
+        by_node.setdefault(node, {})[direction - 3] = course
+    result = []
+    for node, histories in by_node.items():
+        each = thin[node]
+        normal = np.array(each.along)
+        about = local.get(node, np.eye(3))[list(histories)]
+        drill = about @ normal
+        keep = np.eye(len(about)) if np.abs(drill).max() < SMALL else np.linalg.svd(drill[:, None])[0][:, 1:].T
+        for weights in keep:
+            terms = _difference(each, np.cross(weights @ about, normal))
+            if terms:
+                course = combine([(float(w), c) for w, c in zip(weights, histories.values())])
+                result.append((node, (terms, course)))
+    return result
+
+
+def _shares(thin: Thin, direction: Vector) -> dict[Point, float]:
+    """A vector in equal parts at each node."""
+    return {
+        (node, int(k)): float(direction[k]) / len(thin.nodes)
+        for node in thin.nodes
+        for k in np.flatnonzero(np.abs(direction) > SMALL)
+    }
+
+
+def _difference(thin: Thin, direction: Vector) -> dict[Point, float]:
+    """A vector over the thickness at the last node, and its opposite at the first."""
+    ends = ((thin.nodes[0], -1.0 / thin.apart), (thin.nodes[-1], 1.0 / thin.apart))
+    return {
+        (node, int(k)): c * float(direction[k]) for node, c in ends for k in np.flatnonzero(np.abs(direction) > SMALL)
+    }

@@ -1,0 +1,1 @@
+"""Shells and beams expanded into solid cells."""

@@ -1,0 +1,142 @@
+"""Surface meshes with a thickness as solid cells: hex20 and wedge15, one through the thickness.
+
+Each node gets a director: the unit normal of the surface there, the mean over the cells around it whose normals lie within
+20 degrees of each other and which are equally thick. A node with several directors (at a fold, at a step in thickness) is a
+knot: whoever uses the mesh couples the points of all its directors as one rigid body (CalculiX CrunchiX manual, "Shell
+elements" and "Knots", which sets the 20 degrees)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.mesh.reference import reference_nodes
+
+Numbers = NDArray[np.int64]
+Vector = NDArray[np.float64]
+ALIKE = float(np.cos(np.radians(20.0)))  # normals that are one, if they are the mesh's
+SAME = float(np.cos(np.radians(0.5)))  # the same, where one of them is given
+EQUAL = 1e-9  # of the thickness: thicknesses and offsets that are equal
+SOLID = {"tri6": "wedge15", "quad8": "hex20"}
+
+
+@dataclass(frozen=True)
+class Shell:
+    """Quadratic cells of one kind (tri6 or quad8) on a surface. cells: (n, k) rows of points; thickness: (n, k) at the nodes
+    of each [length]; offset: (n,) of the nodes from the mid-surface along the normal, over the
+    thickness; normals: (n, k, 3)
+    where they are given, NaN elsewhere."""
+
+    kind: str
+    cells: Numbers
+    thickness: Vector
+    offset: Vector
+    normals: Vector
+
+
+@dataclass(frozen=True)
+class Expanded:
+    """Solid cells. points: (3 d, 3), of director i the rows 3 i (bottom), 3 i + 1 (middle) and 3 i + 2 (top); node: (d,) the
+    point it stands on; normal: (d, 3); thickness: (d,); cells: kind and (n, 20 or 15) rows of ``points`` for each shell."""
+
+    points: Vector
+    node: Numbers
+    normal: Vector
+    thickness: Vector
+    cells: tuple[tuple[str, Numbers], ...]
+
+
+def expand(points: Vector, shells: Sequence[Shell]) -> Expanded:
+    """The solid cells of shells. points: (n, 3). Raises ValueError for cells without an area at a node: its argument is
+    the number of the shell and of the cell."""
+    found = [_normals(points, shell, i) for i, shell in enumerate(shells)]
+    node = np.concatenate([shell.cells.ravel() for shell in shells])
+    normal = np.concatenate([n.reshape(-1, 3) for n, _ in found])
+    given = np.concatenate([g.ravel() for _, g in found])
+    thickness = np.concatenate([shell.thickness.ravel() for shell in shells])
+    offset = np.concatenate([np.repeat(shell.offset, shell.cells.shape[1]) for shell in shells])
+    director, first = _directors(node, normal, given, thickness, offset)
+    count = len(first)
+    mean = np.zeros((count, 3))
+    np.add.at(mean, director, normal)
+    mean /= np.linalg.norm(mean, axis=1, keepdims=True)
+    stands, thick, shift = node[first], thickness[first], offset[first]
+    layers = -shift[:, None] + np.array([-0.5, 0.0, 0.5])
+    at = points[stands][:, None, :] + (thick[:, None] * layers)[:, :, None] * mean[:, None, :]
+    sizes = np.cumsum([shell.cells.size for shell in shells])[:-1]
+    own = np.split(director, sizes)
+    cells = tuple((SOLID[s.kind], _solid(d.reshape(s.cells.shape))) for s, d in zip(shells, own))
+    return Expanded(at.reshape(-1, 3), stands, mean, thick, cells)
+
+
+def _normals(points: Vector, shell: Shell, which: int) -> tuple[Vector, NDArray[np.bool_]]:
+    """Unit normals (n, k, 3) at the nodes of each cell, and which (n, k) of them were given."""
+    x = points[shell.cells]
+    slopes = _slopes(shell.kind)
+    along = np.einsum("akd,nkx->nadx", slopes, x)
+    result = np.cross(along[:, :, 0], along[:, :, 1])
+    size = np.linalg.norm(result, axis=2, keepdims=True)
+    extent = np.ptp(x, axis=1).max(axis=1)
+    flat = (size[..., 0] <= 1e-10 * extent[:, None] ** 2).any(axis=1)
+    if flat.any():
+        raise ValueError(which, int(np.flatnonzero(flat)[0]))
+    result /= size
+    given = np.asarray(~np.isnan(shell.normals).any(axis=2))
+    result[given] = shell.normals[given] / np.linalg.norm(shell.normals[given], axis=1, keepdims=True)
+    return result, given
+
+
+def _slopes(kind: str) -> Vector:
+    """Derivatives (nodes, functions, 2) of the shape functions of a quadratic cell at its nodes, from its monomials."""
+    at = reference_nodes(kind)
+    powers = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)] + ([(2, 1), (1, 2)] if kind == "quad8" else [])
+    r, s = at.T
+
+    def monomials(a: int, b: int) -> list[Vector]:
+        """Derived a times along r and b times along s."""
+        result = []
+        for p, q in powers:
+            factor = (p if a else 1) * (q if b else 1)
+            result.append(factor * r ** max(p - a, 0) * s ** max(q - b, 0))
+        return result
+
+    values = np.linalg.inv(np.array(monomials(0, 0)).T)  # rows: monomials, columns: functions
+    return np.stack([np.array(monomials(1, 0)).T @ values, np.array(monomials(0, 1)).T @ values], axis=2)
+
+
+def _directors(
+    node: Numbers, normal: Vector, given: NDArray[np.bool_], thickness: Vector, offset: Vector
+) -> tuple[Numbers, Numbers]:
+    """The director of each node of a cell, and of each director the first of these that has it. Given normals come first,
+    else the cells in their order."""
+    result = np.full(len(node), -1, np.int64)
+    firsts: list[int] = []
+    order = np.argsort(node, kind="stable")
+    starts = np.flatnonzero(np.diff(node[order], prepend=-1))
+    for here in np.split(order, starts[1:]):
+        left = here[np.argsort(~given[here], kind="stable")]
+        while len(left):
+            lead = left[0]
+            limit = SAME if given[lead] else ALIKE
+            close = normal[left] @ normal[lead] > limit
+            thick = np.abs(thickness[left] - thickness[lead]) <= EQUAL * thickness[lead]
+            moved = np.abs(offset[left] - offset[lead]) <= EQUAL
+            mine = close & thick & moved
+            mine[0] = True
+            result[left[mine]] = len(firsts)
+            firsts.append(int(lead))
+            left = left[~mine]
+    return result, np.array(firsts, np.int64)
+
+
+def _solid(director: Numbers) -> Numbers:
+    """Rows of the expanded points of solid cells; director: (n, 6 or 8) of the nodes of the shell's cells."""
+    corners = director.shape[1] // 2
+    bottom, top = 3 * director, 3 * director + 2
+    return np.concatenate(
+        [bottom[:, :corners], top[:, :corners], bottom[:, corners:], top[:, corners:], 3 * director[:, :corners] + 1],
+        axis=1,
+    )
