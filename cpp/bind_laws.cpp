@@ -10,6 +10,38 @@ using Answer =
     std::tuple<nb::ndarray<nb::numpy, double>, nb::ndarray<nb::numpy, double>, nb::ndarray<nb::numpy, double>>;
 using Failure = std::optional<std::tuple<std::size_t, double>>;
 
+// Strains and histories of n points, one after the other in as many threads as there are, by respond(i, strain, before,
+// after, stress).
+template <class Respond>
+Answer at_points(const Matrix<double> &strain, const Matrix<double> &before, std::size_t h, const Respond &respond) {
+  constexpr std::size_t FEW_POINTS = 1000;
+  const std::size_t n = strain.shape(0);
+  if (strain.shape(1) != STRAINS || before.shape(0) != n || before.shape(1) != h)
+    throw nb::value_error("strains and histories disagree");
+  std::vector<double> stress(n * STRAINS), tangent(n * STRAINS * STRAINS), after(n * h);
+  {
+    nb::gil_scoped_release release;
+    const std::size_t parts = n < FEW_POINTS ? 1 : thread_count();
+    run_parts(parts, [&](std::size_t part) {
+      for (std::size_t i = n * part / parts; i < n * (part + 1) / parts; ++i) {
+        double own[STRAINS];
+        std::copy_n(strain.data() + i * STRAINS, STRAINS, own);
+        const Dense told = respond(i, own, before.data() + i * h, after.data() + i * h, &stress[i * STRAINS]);
+        std::copy_n(told.c, STRAINS * STRAINS, &tangent[i * STRAINS * STRAINS]);
+      }
+    });
+  }
+  return {to_numpy(std::move(stress), {n, STRAINS}), to_numpy(std::move(tangent), {n, STRAINS, STRAINS}),
+          to_numpy(std::move(after), {n, h})};
+}
+
+template <class Law>
+Dense respond_at(const Law &law, bool logarithmic, double *strain, const double *before, double *after,
+                 double *stress) {
+  return logarithmic ? PointMaterial<Law, true>{law, false}.respond(strain, before, after, stress)
+                     : PointMaterial<Law, false>{law, false}.respond(strain, before, after, stress);
+}
+
 // A law under small strains, or in the space of logarithmic ones.
 class PointLaw {
 public:
@@ -30,27 +62,10 @@ public:
   std::size_t history() const override { return law.history; }
 
   Answer evaluate(Matrix<double> strain, Matrix<double> before, bool logarithmic) const override {
-    const std::size_t n = strain.shape(0), h = law.history;
-    if (strain.shape(1) != STRAINS || before.shape(0) != n || before.shape(1) != h)
-      throw nb::value_error("strains and histories disagree");
-    std::vector<double> stress(n * STRAINS), tangent(n * STRAINS * STRAINS), after(n * h);
-    {
-      nb::gil_scoped_release release;
-      const std::size_t parts = n < FEW_POINTS ? 1 : thread_count();
-      run_parts(parts, [&](std::size_t part) {
-        for (std::size_t i = n * part / parts; i < n * (part + 1) / parts; ++i) {
-          double own[STRAINS];
-          std::copy_n(strain.data() + i * STRAINS, STRAINS, own);
-          const double *old = before.data() + i * h;
-          double *now = after.data() + i * h, *here = &stress[i * STRAINS];
-          const Dense told = logarithmic ? PointMaterial<Law, true>{law, false}.respond(own, old, now, here)
-                                         : PointMaterial<Law, false>{law, false}.respond(own, old, now, here);
-          std::copy_n(told.c, STRAINS * STRAINS, &tangent[i * STRAINS * STRAINS]);
-        }
-      });
-    }
-    return {to_numpy(std::move(stress), {n, STRAINS}), to_numpy(std::move(tangent), {n, STRAINS, STRAINS}),
-            to_numpy(std::move(after), {n, h})};
+    return at_points(strain, before, law.history,
+                     [&](std::size_t, double *own, const double *old, double *now, double *stress) {
+                       return respond_at(law, logarithmic, own, old, now, stress);
+                     });
   }
 
   Failure integrate(const CellArrays &cells, bool finite, bool plane_stress, std::optional<Matrix<double>> displacement,
@@ -75,7 +90,6 @@ public:
   }
 
 private:
-  static constexpr std::size_t FEW_POINTS = 1000;
   Law law;
 };
 
@@ -88,6 +102,31 @@ static std::unique_ptr<PointLaw> j2(double bulk, double shear, std::vector<doubl
   if (table.size() < 2 || table.size() % 2 || back.size() % 2)
     throw nb::value_error("tables have two columns, that of yield stresses a row at least");
   return std::make_unique<Held<J2>>(J2(bulk, shear, {std::move(table), slope, saturation, rate, std::move(back)}));
+}
+
+using Row = std::tuple<double, double, double, std::vector<double>, double, double, double, std::vector<double>>;
+
+static std::unique_ptr<J2OverTemperature> j2_over_temperature(const std::vector<Row> &given) {
+  std::vector<J2OverTemperature::Row> rows;
+  for (const auto &[temperature, young, poisson, table, slope, saturation, rate, back] : given) {
+    rows.push_back({temperature, young, poisson, {table, slope, saturation, rate, back}});
+    if (table.size() < 2 || table.size() % 2 || back.size() % 2 || table.size() != rows[0].hardening.table.size() ||
+        back.size() != rows[0].hardening.back.size())
+      throw nb::value_error("tables have two columns, and as many rows at every temperature");
+  }
+  if (rows.empty())
+    throw nb::value_error("no temperatures");
+  return std::make_unique<J2OverTemperature>(std::move(rows));
+}
+
+static Answer evaluate_over_temperature(const J2OverTemperature &law, Matrix<double> strain, Matrix<double> before,
+                                        Vector<double> temperature, bool logarithmic) {
+  if (temperature.shape(0) != strain.shape(0))
+    throw nb::value_error("strains and temperatures disagree");
+  return at_points(strain, before, law.history(),
+                   [&](std::size_t i, double *own, const double *old, double *now, double *stress) {
+                     return respond_at(law.at(temperature.data()[i]), logarithmic, own, old, now, stress);
+                   });
 }
 
 static std::unique_ptr<PointLaw> stretches(std::vector<double> terms, std::vector<double> powers,
@@ -111,6 +150,15 @@ void bind_laws(nb::module_ &m) {
            nb::arg("tangent").noconvert() = nb::none(), nb::arg("stress").noconvert() = nb::none(),
            nb::arg("energy").noconvert() = nb::none(), nb::arg("after").noconvert() = nb::none(),
            "As ``integrate_isotropic`` and ``integrate_hyperelastic``; before and after: histories (cells q, h).");
+  nb::class_<J2OverTemperature>(m, "J2OverTemperature",
+                                "Von Mises plasticity whose constants depend on the temperature.")
+      .def_prop_ro("history", &J2OverTemperature::history, "Numbers in the history of a point.")
+      .def("evaluate", &evaluate_over_temperature, nb::arg("strain").noconvert(), nb::arg("before").noconvert(),
+           nb::arg("temperature").noconvert(), nb::arg("logarithmic"), "As of ``PointLaw``, at temperatures (n,).");
+  m.def("j2_over_temperature", &j2_over_temperature, nb::arg("rows"),
+        "Rows of temperature, growing, Young's modulus, Poisson's ratio, and as in ``j2`` table, slope, saturation, "
+        "rate, "
+        "back, all with the same plastic strains and as many back stresses.");
   m.def("hooke", &hooke, nb::arg("bulk"), nb::arg("shear"), "Isotropic linear elasticity.");
   m.def("stretches", &stretches, nb::arg("terms"), nb::arg("powers"), nb::arg("volume"),
         "Hyperelasticity, of finite strains only: Ogden's terms (n, 2) mu and alpha, flat; factors of powers of I - 3, "

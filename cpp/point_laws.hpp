@@ -3,6 +3,7 @@
 // Strains are small or logarithmic, shear strains doubled.
 #pragma once
 #include "hyperelastic.hpp"
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -45,7 +46,8 @@ struct Hooke {
 
 // Von Mises plasticity with associated flow, theory (Y2), (Y3): isotropic hardening by a table of plastic strains and
 // yield stresses, linear and saturating terms, and back stresses of Armstrong and Frederick. History: plastic strain
-// (shear doubled), equivalent plastic strain, plastic work, back stresses.
+// (shear doubled), equivalent plastic strain, plastic work, and of each back stress the strain (shear not doubled) of
+// which it is 2/3 of the modulus, so that it follows a modulus that changes with the temperature, theory (Y12).
 class J2 {
 public:
   static constexpr int EQUIVALENT = STRAINS, WORK = STRAINS + 1, BACK = STRAINS + 2;
@@ -156,7 +158,7 @@ private:
         const double share = 1 / (1 + back[2 * k + 1] * amount);
         kinematic += share * back[2 * k], stiffening += share * share * back[2 * k];
         for (int s = 0; before && s < STRAINS; ++s) {
-          const double old = before[BACK + k * STRAINS + s];
+          const double old = 2.0 / 3 * back[2 * k] * before[BACK + k * STRAINS + s];
           normal[s] -= share * old, turning[s] += back[2 * k + 1] * share * share * old;
         }
       }
@@ -173,7 +175,7 @@ private:
       double low = 0, high = ROOT * std::sqrt(contracted(deviator, deviator));
       for (std::size_t k = 0; before && 2 * k < law.hardening.back.size(); ++k) {
         const double *old = before + BACK + k * STRAINS;
-        high += ROOT * std::sqrt(contracted(old, old));
+        high += ROOT * 2.0 / 3 * law.hardening.back[2 * k] * std::sqrt(contracted(old, old));
       }
       high /= 3 * law.elastic.shear;
       const double rounding = 4 * std::numeric_limits<double>::epsilon() * ROOT * size;
@@ -213,10 +215,10 @@ private:
       for (int s = 0; s < STRAINS; ++s)
         after[s] = (before ? before[s] : 0) + (s < 3 ? 1 : 2) * way * normal[s];
       for (std::size_t k = 0; 2 * k < back.size(); ++k) {
-        const double share = 1 / (1 + back[2 * k + 1] * amount), step = 2.0 / 3 * back[2 * k] * way;
+        const double share = 1 / (1 + back[2 * k + 1] * amount);
         for (int s = 0; s < STRAINS; ++s) {
-          const double old = before ? before[BACK + k * STRAINS + s] : 0, now = share * (old + step * normal[s]);
-          taken += (s < 3 ? 1 : 2) * (old + now) / 2 * way * normal[s];
+          const double old = before ? before[BACK + k * STRAINS + s] : 0, now = share * (old + way * normal[s]);
+          taken += (s < 3 ? 1 : 2) * back[2 * k] / 3 * (old + now) * way * normal[s];
           after[BACK + k * STRAINS + s] = now;
         }
       }
@@ -227,6 +229,49 @@ private:
 
   Hooke elastic;
   Hardening hardening;
+};
+
+// Between laws at some temperatures, growing, all with the plastic strains and back stresses of the first: every
+// constant is linear in the temperature between them, and constant beyond, theory (Y12).
+class J2OverTemperature {
+public:
+  struct Row {
+    double temperature, young, poisson;
+    J2::Hardening hardening;
+  };
+
+  explicit J2OverTemperature(std::vector<Row> rows) : rows(std::move(rows)) {}
+
+  std::size_t history() const { return J2::BACK + rows[0].hardening.back.size() / 2 * STRAINS; }
+
+  J2 at(double temperature) const {
+    std::size_t upper = 0;
+    while (upper + 1 < rows.size() && rows[upper].temperature < temperature)
+      ++upper;
+    const Row &high = rows[upper], &low = rows[upper ? upper - 1 : 0];
+    const double apart = high.temperature - low.temperature;
+    const double share = apart > 0 ? std::clamp((temperature - low.temperature) / apart, 0.0, 1.0) : 1;
+    const auto between = [share](double a, double b) { return a + share * (b - a); };
+    const double young = between(low.young, high.young), poisson = between(low.poisson, high.poisson);
+    J2::Hardening now = low.hardening;
+    for (std::size_t i = 1; i < now.table.size(); i += 2)
+      now.table[i] = between(low.hardening.table[i], high.hardening.table[i]);
+    for (std::size_t i = 0; i < now.back.size(); ++i)
+      now.back[i] = between(low.hardening.back[i], high.hardening.back[i]);
+    now.slope = between(low.hardening.slope, high.hardening.slope);
+    now.saturation = between(low.hardening.saturation, high.hardening.saturation);
+    now.rate = between(low.hardening.rate, high.hardening.rate);
+    return {bulk_modulus(young, poisson), young / (2 * (1 + poisson)), std::move(now)};
+  }
+
+private:
+  // Bodies that keep their volume have a large bulk modulus instead of none.
+  static double bulk_modulus(double young, double poisson) {
+    constexpr double INCOMPRESSIBLE = 1e7; // over the shear modulus, as in materials/elastic.py
+    return young / std::max(3 * (1 - 2 * poisson), 2 * (1 + poisson) / INCOMPRESSIBLE);
+  }
+
+  std::vector<Row> rows;
 };
 
 // The strain out of the plane that leaves no stress there, by Newton's method within bounds; the tangent is that of the

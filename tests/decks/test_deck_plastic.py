@@ -79,13 +79,49 @@ def test_finite(tmp_path):
     assert full == pytest.approx(tau / np.exp(0.4 * tau / E), rel=1e-6)
 
 
+@pytest.mark.parametrize("hardening", ["", ", HARDENING=KINEMATIC", ", HARDENING=COMBINED"])
+def test_over_temperature(tmp_path, hardening):
+    """Held lengthwise and warmed from 20 to 220 degrees, then cooled: compressed beyond the yield stress of 220, torn."""
+    text = BAR.replace("210000., 0.3", "210000., 0.3, 0.\n110000., 0.3, 400.").replace(
+        "*PLASTIC", f"*PLASTIC{hardening}"
+    )
+    text = text.replace("450., 0.1", "450., 0.1, 0.\n150., 0., 400.\n250., 0.1, 400.").replace(
+        "250., 0.\n", "250., 0., 0.\n"
+    )
+    if "COMBINED" in hardening:
+        text = text.replace("250., 0.1, 400.", "250., 0.1, 400.\n*CYCLIC HARDENING\n250., 0., 0.\n150., 0., 400.")
+    text = text.replace("*SOLID", "*EXPANSION, ZERO=20.\n2.E-5\n*SOLID")
+    text = text.replace(
+        "*BOUNDARY\nLOW", "*NSET, NSET=ALL\nLOW, HIGH\n*INITIAL CONDITIONS, TYPE=TEMPERATURE\nALL, 20.\n*BOUNDARY\nLOW"
+    )
+    text = text.replace("3, 3, 0.02\n", "3, 3\n*TEMPERATURE\nALL, 220.\n").replace(
+        "3, 3, 0.019\n", "3, 3\n*TEMPERATURE\nALL, 20.\n"
+    )
+    hot, cold = ends(tmp_path, text)
+    young, start, slope = at(220.0)
+    x = (2e-5 * 200.0 - start / young) / (1.0 + slope / young)
+    assert hot == pytest.approx(-start - slope * x, rel=1e-9)
+    young, start, slope = at(20.0)
+    if hardening:  # the back stress -slope (x - y) of what is left after it flowed back by y, in tension
+        torn = young * start / (young + slope)
+    else:  # the yield stress has grown by both ways
+        torn = young * (x - (young * x - start - slope * x) / (young + slope))
+    assert cold == pytest.approx(torn, rel=1e-9)
+
+
+def at(degrees):
+    """Young's modulus, yield stress and hardening."""
+    return [np.interp(degrees, [0.0, 400.0], x) for x in ([210e3, 110e3], [250.0, 150.0], [2e3, 1e3])]
+
+
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
         ("*PLASTIC", "*PLASTIC, HARDENING=JOHNSONCOOK", "HARDENING=JOHNSONCOOK is not supported"),
         ("250., 0.", "250., 0.01", "the first row must have 0"),
         ("450., 0.1", "150., 0.1", "softens"),
-        ("450., 0.1", "450., 0.1, 300.", "depend on temperature"),
+        ("450., 0.1", "450., 0.1, 300.", "the first row must have 0"),
+        ("450., 0.1", "450., 0.1\n250., 0., -10.", "temperature: must grow"),
         ("450., 0.1", "450., 0.1\n*CYCLIC HARDENING\n1., 0.", "go together"),
         ("*PLASTIC\n", "*CYCLIC HARDENING\n", "no \\*PLASTIC"),
         ("*PLASTIC\n250., 0.\n", "*PLASTIC, HARDENING=KINEMATIC\n250., 0.\n300., 0.05\n", "more than two rows"),

@@ -71,11 +71,11 @@ def test_one_row_is_the_material_itself() -> None:
     [
         ([0.0, 1.0], [COLD], "as many of both"),
         ([1.0, 1.0], [COLD, HOT], "must grow"),
-        ([0.0, 1.0], [COLD, abut.Hencky(1.0, 0.3)], "Hencky is not linear elastic"),
+        ([0.0, 1.0], [COLD, abut.Hencky(1.0, 0.3)], "Hencky does not depend on temperature"),
         (
             [0.0, 1.0],
             [COLD, abut.Orthotropic([1.0] * 3, [0.0] * 3, [1.0] * 3)],
-            "all isotropic, or all with directions",
+            "all elastic, all plastic, or all with directions",
         ),
     ],
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from abut._core._core import (
     Cells,
     Hyperelastic,
+    J2OverTemperature,
     PointLaw,
     block_pattern,
     block_product,
@@ -19,6 +20,7 @@ from abut._core._core import (
     integrate_hyperelastic,
     integrate_isotropic,
     j2,
+    j2_over_temperature,
     joined_pattern,
     node_pattern,
     padded_blocks,
@@ -38,6 +40,7 @@ from abut._core._core import (
 __all__ = [
     "Cells",
     "Hyperelastic",
+    "J2OverTemperature",
     "PointLaw",
     "block_pattern",
     "block_product",
@@ -52,6 +55,7 @@ __all__ = [
     "integrate_hyperelastic",
     "integrate_isotropic",
     "j2",
+    "j2_over_temperature",
     "joined_pattern",
     "node_pattern",
     "padded_blocks",

@@ -27,10 +27,10 @@ def elastic_law(deck: Deck, piece: Piece, dim: int) -> LinearElastic | LocalElas
     several = [rows for rows in (elastic.rows, expansion.rows) if len(rows) > 1]
     temperatures = sorted({temperature for rows in several for temperature, _ in rows})
     laws = [_one(elastic, expansion, t, axes, material.density) for t in temperatures]
-    return OverTemperature(temperatures, laws, _initial(deck, piece), expansion.zero)
+    return OverTemperature(temperatures, laws, initial_temperature(deck, piece), expansion.zero)
 
 
-def _initial(deck: Deck, piece: Piece) -> float:
+def initial_temperature(deck: Deck, piece: Piece) -> float:
     """Temperature of a body at the beginning."""
     rows = [nodes for block in deck.blocks for nodes in block.nodes[np.isin(block.ids, piece.elements)]]
     found = {deck.initial.get(int(node), 0.0) for nodes in rows for node in nodes}
@@ -47,29 +47,30 @@ def _one(
     elastic: Elastic, expansion: Expansion, temperature: float, axes: Axes | None, density: float
 ) -> LinearElastic | LocalElastic:
     """At a temperature."""
-    swelling = _between(expansion.rows, temperature)
+    swelling = between(expansion.rows, temperature)
     given = swelling[0] if len(swelling) == 1 else swelling
     if elastic.kind == "isotropic":
-        young, poisson = _between(elastic.rows, temperature)
+        young, poisson = between(elastic.rows, temperature)
         if len(swelling) == 1:
             return LinearElastic(young, poisson, density, swelling[0])
         shear = young / (2.0 + 2.0 * poisson)
         return Orthotropic((young,) * 3, (poisson,) * 3, (shear,) * 3, axes=axes, expansion=given, density=density)
     if elastic.kind == "anisotropic":
-        return Anisotropic(_between(elastic.rows, temperature), axes=axes, expansion=given, density=density)
+        return Anisotropic(between(elastic.rows, temperature), axes=axes, expansion=given, density=density)
     known = dict(elastic.rows)
     if len(known) == 1 or temperature in known:
         values = known.get(temperature, elastic.rows[0][1])
         return Orthotropic(values[:3], values[3:6], values[6:], axes=axes, expansion=given, density=density)
     each = tuple((t, _constants(Orthotropic(v[:3], v[3:6], v[6:]))) for t, v in elastic.rows)
-    return Anisotropic(_between(each, temperature), axes=axes, expansion=given, density=density)
+    return Anisotropic(between(each, temperature), axes=axes, expansion=given, density=density)
 
 
 def _constants(law: Orthotropic) -> tuple[float, ...]:
     return tuple(float(law.stiffness[ORDER[i], ORDER[j]]) for j in range(6) for i in range(j + 1))
 
 
-def _between(rows: Rows, temperature: float) -> tuple[float, ...]:
+def between(rows: Rows, temperature: float) -> tuple[float, ...]:
+    """Linear in the temperature, constant beyond."""
     at = [t for t, _ in rows]
     values = np.array([v for _, v in rows])
     return tuple(float(np.interp(temperature, at, column)) for column in values.T)

@@ -69,7 +69,7 @@ def unsupported(deck: Deck) -> Iterator[DeckError]:
 
 def yields(deck: Deck) -> bool:
     """Whether a material of the deck is plastic."""
-    return any(section.material.hardening is not None for section in deck.sections)
+    return any(section.material.hardening for section in deck.sections)
 
 
 def plastic_steps(deck: Deck) -> SolveOptions:

@@ -18,6 +18,7 @@ from abut.decks.couplings import couplings, reference_loads, reference_nodes, un
 from abut.decks.elastic import elastic_law
 from abut.decks.friction import friction_options, path_notes
 from abut.decks.large import finite_notes, is_finite, load_steps, plastic_steps, unsupported, yields
+from abut.decks.metal import metal_law
 from abut.decks.overclosure import overclosure_notes, own_laws, softened
 from abut.decks.plane import plane_of, thickness
 from abut.decks.rigid import join, rigid_bodies, with_parts_coupled
@@ -36,7 +37,6 @@ from abut.io.deck.record import Deck, GeneralContact, Numbers, Pair
 from abut.io.deck.ties import near, tie_notes
 from abut.io.deck.time_histories import Course, combine, courses, scaled, times, zero
 from abut.materials.material import Material
-from abut.materials.plastic import Plastic
 from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
 from abut.mesh.read import build
@@ -226,13 +226,13 @@ def _solids(deck: Deck, parts: Mapping[str, Piece], plane: str | None, reasons: 
 
 def _solid(deck: Deck, name: str, piece: Piece, plane: str | None) -> Solid:
     material = piece.section.material
-    (a, b, *_), rest = material.elastic.rows[0][1], (material.density, material.expansion.rows[0][1][0])
+    rest = material.density, material.expansion.rows[0][1][0]
     law: Material
     try:
         if material.rubber is not None:
             law = of_rubber(material.rubber, rest)
-        elif (metal := material.hardening) is not None:
-            law = Plastic(a, b, metal.table, backstresses=metal.backstresses, density=rest[0], expansion=rest[1])
+        elif material.hardening:
+            law = metal_law(deck, piece)
         else:
             law = elastic_law(deck, piece, 3 if plane is None else 2)
     except InputError as error:

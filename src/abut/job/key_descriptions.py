@@ -77,10 +77,10 @@ MEANINGS: dict[str, dict[str, str]] = {
         "expansion": "thermal expansion, a number or one along each local direction [1/temperature]",
     },
     "OverTemperatureTable": {
-        "kind": "linear elasticity between other materials at some temperatures",
+        "kind": "elasticity, or metal that yields, between other materials at some temperatures",
         "temperatures": "at which these are, growing [temperature]",
-        "materials": "names of materials of kind linear-elastic, or of orthotropic and anisotropic ones with the same axes; "
-        "constants are linear between, and constant beyond",
+        "materials": "names of materials, all linear-elastic, or all plastic with as many backstresses, or orthotropic "
+        "and anisotropic ones with the same axes; constants are linear between, and constant beyond",
         "initial_temperature": "temperature at the beginning, from which changes count [temperature]",
         "zero": "temperature from which expansions count, secants alpha(T) of alpha(T) (T - zero); left out: "
         "initial_temperature [temperature]",

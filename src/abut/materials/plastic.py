@@ -125,7 +125,8 @@ class Plastic:
         return FIELDS
 
     def initial(self, n: int) -> Array:
-        """Plastic strain, equivalent plastic strain, plastic work per volume, back stresses: (n, 8 + 6 of each)."""
+        """Plastic strain, equivalent plastic strain, plastic work per volume, and of each back stress the strain of which it
+        is 2/3 of the modulus: (n, 8 + 6 of each)."""
         return np.zeros((n, 8 + 6 * len(self.backstresses)))
 
     def evaluate(self, strain: Array, history: Array) -> Evaluated:

@@ -1,8 +1,8 @@
-"""Linear elasticity whose constants and expansion depend on the temperature, theory (A5), (A6)."""
+"""Materials whose constants and expansion depend on the temperature, theory (A5), (A6), (Y12)."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -10,31 +10,35 @@ from itertools import pairwise
 import numpy as np
 
 from abut import checks
+from abut._core import J2OverTemperature
 from abut.errors import InputError
 from abut.materials.anisotropic import LocalElastic
 from abut.materials.directional import Directional
 from abut.materials.elastic import INCOMPRESSIBLE, LinearElastic
 from abut.materials.evaluated import Array, Evaluated
-from abut.materials.material import OwnMaterial
+from abut.materials.material import Material, OwnMaterial
 from abut.materials.places import Places
+from abut.materials.plastic import FIELDS, Plastic
+from abut.materials.plastic_over_temperature import HeatedPlastic, between
 
-Elastic = LinearElastic | LocalElastic
+AtOne = LinearElastic | LocalElastic | Plastic
 
 
 @dataclass(frozen=True)
 class OverTemperature(OwnMaterial):
-    """Linear elasticity, isotropic or with directions, between materials at some temperatures.
+    """Linear elasticity, isotropic or with directions, or metal that yields, between materials at some temperatures.
 
     Constants are linear in the temperature between those given and constant beyond (of isotropic materials Young's modulus
-    and Poisson's ratio, of others the stiffness). The stress is that of the strain and the temperature at a time, whatever
-    came before.
+    and Poisson's ratio, of metal also the yield stress at every plastic strain, of others the stiffness). The stress is that
+    of the strain and the temperature at a time, and of what has flowed.
 
     Parameters
     ----------
     temperatures : sequence of float
         Growing [temperature].
-    materials : sequence of LinearElastic, Orthotropic or Anisotropic
-        One at each temperature: all of them ``LinearElastic``, or all others, with the same axes.
+    materials : sequence of LinearElastic, Plastic, Orthotropic or Anisotropic
+        One at each temperature: all of them ``LinearElastic``, or ``Plastic`` with as many back stresses, or with
+        directions along the same axes.
     initial_temperature : float
         Temperature at the beginning, to which changes (``Temperature``, ``Solid.temperature``) add up.
     zero : float, optional
@@ -56,7 +60,7 @@ class OverTemperature(OwnMaterial):
     """
 
     temperatures: Sequence[float]
-    materials: Sequence[Elastic]
+    materials: Sequence[AtOne]
     initial_temperature: float = 0.0
     zero: float | None = None
 
@@ -79,14 +83,15 @@ class OverTemperature(OwnMaterial):
             if not after > before:
                 raise InputError(f"temperatures: must grow, got {after:g} after {before:g}")
         for material in self.materials:
-            if not isinstance(material, (LinearElastic, LocalElastic)):
+            if not isinstance(material, (LinearElastic, LocalElastic, Plastic)):
                 raise InputError(
-                    f"materials: {type(material).__name__} is not linear elastic; give LinearElastic, Orthotropic "
-                    "or Anisotropic"
+                    f"materials: {type(material).__name__} does not depend on temperature; give LinearElastic, Plastic, "
+                    "Orthotropic or Anisotropic"
                 )
-        alike = {"isotropic" if isinstance(material, LinearElastic) else material.axes for material in self.materials}
+        alike = {material.axes if isinstance(material, LocalElastic) else type(material) for material in self.materials}
         if len(alike) > 1:
-            raise InputError("materials: expected all isotropic, or all with directions and the same axes")
+            raise InputError("materials: expected all elastic, all plastic, or all with directions and the same axes")
+        _ = self._flowing
 
     @property
     def density(self) -> float:  # type: ignore[override]
@@ -102,6 +107,20 @@ class OverTemperature(OwnMaterial):
         return LinearElastic(young, poisson, self.density)
 
     @property
+    def volume_preserving(self) -> bool:  # type: ignore[override]
+        """As in ``OwnMaterial``: flow keeps the volume."""
+        return self._flowing is not None
+
+    @property
+    def fields(self) -> Mapping[str, slice]:  # type: ignore[override]
+        """As in ``OwnMaterial``."""
+        return FIELDS if self._flowing is not None else {}
+
+    def initial(self, n: int) -> Array:
+        """As in ``Material``."""
+        return np.zeros((n, 0 if self._flowing is None else self._flowing.history))
+
+    @property
     def modulus(self) -> float:
         """At the beginning."""
         if self.linear is not None:
@@ -109,9 +128,11 @@ class OverTemperature(OwnMaterial):
         nearest = np.abs(np.array(self.temperatures) - self.initial_temperature).argmin()
         return self.materials[int(nearest)].modulus
 
-    def at(self, places: Places) -> Directional:
+    def at(self, places: Places) -> Material:
         """As in ``LocalMaterial``."""
         now = self.initial_temperature + places.change
+        if self._flowing is not None:
+            return HeatedPlastic(self._flowing, now, self._swelling(places.change)[:, 0], self.modulus)
         if not now.any() or (now == now[0]).all():
             now = now[:1]
         if self._isotropic:
@@ -128,7 +149,10 @@ class OverTemperature(OwnMaterial):
         return self.at(Places(np.zeros((1, 3)), np.zeros(1))).evaluate(np.asarray(strain, dtype=float), history)
 
     def evaluate_finite(self, strain: Array, history: Array) -> Evaluated:
-        """As in ``FiniteMaterial``: the law of Saint Venant and Kirchhoff."""
+        """As in ``FiniteMaterial``: the law of Saint Venant and Kirchhoff, of metal that in logarithmic strains."""
+        here = self.at(Places(np.zeros((1, 3)), np.zeros(1)))
+        if isinstance(here, HeatedPlastic):
+            return here.evaluate_finite(np.asarray(strain, dtype=float), history)
         return self.evaluate(strain, history)
 
     def check(self, dim: int, plane: str | None, where: str) -> None:
@@ -138,7 +162,13 @@ class OverTemperature(OwnMaterial):
 
     @property
     def _isotropic(self) -> bool:
-        return isinstance(self.materials[0], LinearElastic)
+        return not isinstance(self.materials[0], LocalElastic)
+
+    @cached_property
+    def _flowing(self) -> J2OverTemperature | None:
+        """Of metal that yields."""
+        metals = [material for material in self.materials if isinstance(material, Plastic)]
+        return between(self.temperatures, metals) if metals else None
 
     @property
     def _local(self) -> list[LocalElastic]:
@@ -146,7 +176,7 @@ class OverTemperature(OwnMaterial):
 
     @property
     def _constants(self) -> tuple[list[float], list[float]]:
-        own = [material for material in self.materials if isinstance(material, LinearElastic)]
+        own = [material for material in self.materials if not isinstance(material, LocalElastic)]
         return [material.young for material in own], [material.poisson for material in own]
 
     def _hooke(self, now: Array) -> Array:

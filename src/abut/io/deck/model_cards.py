@@ -68,15 +68,15 @@ def _material(card: Card, following: Sequence[Card]) -> Material:
     density = _density(options["DENSITY"]) if "DENSITY" in options else 0.0
     swelling = expansion(options["EXPANSION"]) if "EXPANSION" in options else Expansion()
     metal = hardening(options)
-    if law is not None or metal is not None:
-        _check_plain(options, constants, swelling)
+    if law is not None or metal:
+        _check_plain(options, constants, swelling, law is not None)
     return Material(name, constants, density, swelling, card.place, law, metal)
 
 
-def _check_plain(options: Mapping[str, Card], constants: Elastic, swelling: Expansion) -> None:
+def _check_plain(options: Mapping[str, Card], constants: Elastic, swelling: Expansion, rubber: bool) -> None:
     """Raise for what metal that yields and rubber cannot have."""
     for name, rows in (("ELASTIC", constants.rows), ("EXPANSION", swelling.rows)):
-        if len(rows) > 1:
+        if rubber and len(rows) > 1:
             raise options[name].lines[1].error(SEVERAL)
     if constants.kind != "isotropic":
         raise options["ELASTIC"].error("metal that yields is isotropic here; give TYPE=ISO")

@@ -98,7 +98,7 @@ class Material:
     expansion: Expansion
     place: Place
     rubber: Rubber | None = None
-    hardening: Hardening | None = None
+    hardening: tuple[tuple[float, Hardening], ...] = ()  # by temperature, growing
 
     @property
     def directed(self) -> bool:
