@@ -17,6 +17,8 @@ from abut.io.raw import RawMesh
 from abut.types import Array, Foreign
 
 VERTEX = 1  # of VTK: the points of node sets
+BLOCK = 2**20  # bytes that are compressed together
+SHRINKS = 20_000  # times, at most: zlib about a thousandfold, LZMA seven thousandfold
 VTK_KIND = {VERTEX: "point"} | {cell.vtk: cell.name for cell in CELLS.values()}
 VTK_CODE = {kind: code for code, kind in VTK_KIND.items()}
 NODES = {"point": 1} | {cell.name: cell.nodes for cell in CELLS.values()}
@@ -30,13 +32,15 @@ def write_vtu(
     cell_data: Mapping[str, Array] | None = None,
     names: Mapping[str, Sequence[str]] | None = None,
     raw: bool = False,
+    small: bool = False,
 ) -> None:
     """Write points (n, 2 or 3), cells by type (kind, or "point" for vertices, and connectivity) and data; quadratic cells
     stay quadratic.
 
     point_data: (n,) or (n, k); cell_data: (cells,) or (cells, k) in the order of the blocks; names: lists of strings
     for the whole file (VTK's field data). raw: no base64, which takes longer than all the rest, for a third more bytes, but
-    lets VTK notice damage, and numbers of points in 32 bits: for results, which viewers read, rather than meshes.
+    lets VTK notice damage, and numbers of points in 32 bits: for results, which viewers read, rather than meshes. small:
+    with LZMA in place of zlib, which takes several times as long.
     Raises InputError where the file cannot be written.
     """
     from vtkmodules.util.numpy_support import numpy_to_vtk
@@ -71,7 +75,7 @@ def write_vtu(
         writer = vtkXMLUnstructuredGridWriter()
         writer.SetFileName(str(temporary))
         writer.SetInputData(grid)
-        _compress(writer, results=raw)
+        _compress(writer, results=raw, small=small)
         writer.SetEncodeAppendedData(not raw)
         if not writer.Write():
             raise OSError(f"VTK could not write {path.name}")
@@ -91,10 +95,13 @@ def _add_texts(grid: Foreign, names: Mapping[str, Sequence[str]]) -> None:
         grid.GetFieldData().AddArray(strings)
 
 
-def _compress(writer: Foreign, results: bool) -> None:
-    """Of results zlib leaves a seventh less than LZ4; its higher levels take longer for a hundredth."""
+def _compress(writer: Foreign, results: bool, small: bool) -> None:
+    """Of results zlib leaves a seventh to a half less than LZ4, and LZMA a tenth to two fifths less than zlib; their higher
+    levels take longer for some hundredths. Facets repeat the values of nodes that they share: one block finds these where
+    VTK's own, of 32 kB, do not reach."""
     if results:
-        writer.SetCompressorTypeToZLib()
+        writer.SetBlockSize(BLOCK)
+        writer.SetCompressorTypeToLZMA() if small else writer.SetCompressorTypeToZLib()
         writer.SetCompressionLevel(1)
     else:
         writer.SetCompressorTypeToLZ4()
@@ -172,7 +179,7 @@ def _check_counts(path: Path, data: bytes) -> None:
     """Refuse counts that the size of the file rules out: VTK reserves memory for them, without limit, before it looks."""
     start = data.find(b"<AppendedData")
     head = data[: start if start >= 0 else len(data)]
-    limit = 2000 * len(data)  # zlib shrinks at most about a thousandfold
+    limit = SHRINKS * len(data)
     for key, value in re.findall(rb'(NumberOf\w+|offset)\s*=\s*"([^"]*)"', head):
         if not value.strip().isdigit() or int(value) > limit:
             raise InputError(

@@ -129,7 +129,8 @@ def load_job(
         raise InputError(f"{path}:\n  {problems}") from None
     try:
         model, resolved = _model(file, path.parent, refine)
-        output = Output(file.output.steps, tuple(file.output.fields), tuple(file.output.formats))
+        table = file.output
+        output = Output(table.steps, tuple(table.fields), tuple(table.formats), table.compression)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
     said = [

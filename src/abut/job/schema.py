@@ -19,7 +19,7 @@ from abut.model.coupling import Coupling
 from abut.model.kinematics import KINEMATICS
 from abut.model.probe import QUANTITIES
 from abut.model.solve_options import LINEAR, SolveOptions
-from abut.output.options import FIELDS, FORMATS, STEPS, USUAL, VTU
+from abut.output.options import COMPRESSIONS, FAST, FIELDS, FORMATS, STEPS, USUAL, VTU
 from abut.types import Json
 
 Points = Annotated[
@@ -337,6 +337,7 @@ class OutputTable(Table):
     steps: int | list[int] | Annotated[str, OneOf(STEPS)] = "all"
     fields: list[Annotated[str, OneOf(FIELDS)]] = list(USUAL)
     formats: list[Annotated[str, OneOf(FORMATS)]] = [VTU]
+    compression: Annotated[str, OneOf(COMPRESSIONS)] = FAST
 
 
 class JobFile(Table):

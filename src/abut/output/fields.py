@@ -18,7 +18,8 @@ WriteFields = Callable[[Path, Model, Step, Output], None]  # writes the fields o
 def write_fields(folder: Path, model: Model, step: Step, output: Output = EVERYTHING) -> None:
     """The fields of a step that ``output`` names as one VTU file. Raises InputError where the file cannot be written."""
     grid = output.of_bodies(field_grid(model.mesh, step.displacement, step.stress, cell_error(step), step.remembered))
-    write_vtu(folder / whole_name(step.number), grid.points, grid.blocks, grid.point_data, grid.cell_data, raw=True)
+    path = folder / whole_name(step.number)
+    write_vtu(path, grid.points, grid.blocks, grid.point_data, grid.cell_data, raw=True, small=output.small)
     (folder / list_name(step.number)).unlink(missing_ok=True)  # of an earlier run on several processes
     remove_pieces(folder, step.number)
 

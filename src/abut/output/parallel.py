@@ -75,7 +75,7 @@ def write_piece(
         return None
     grid = output.of_bodies(field_grid(mesh, displacement, stress, error, remembered))
     try:
-        write_vtu(path, grid.points, grid.blocks, grid.point_data, grid.cell_data, raw=True)
+        write_vtu(path, grid.points, grid.blocks, grid.point_data, grid.cell_data, raw=True, small=output.small)
     except InputError as error:
         return error
     return arrays(grid)

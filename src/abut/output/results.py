@@ -141,7 +141,8 @@ def write_steps(
             fields(folder, solution.model, step, output)
         for contact, name in zip(step.contacts, _contact_files(step)) if output.contacts else ():
             grid = single(contact_grid(step, contact))
-            write_vtu(folder / name, grid.points, grid.blocks, grid.point_data, grid.cell_data, raw=True)
+            path = folder / name
+            write_vtu(path, grid.points, grid.blocks, grid.point_data, grid.cell_data, raw=True, small=output.small)
 
 
 def _wanted(solution: Solution, step: Step, output: Output, final: bool) -> bool:
