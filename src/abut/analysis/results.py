@@ -145,6 +145,7 @@ def step_result(
         flow=end.flow,
         preloads=_preloads(end, linked),
         springs=_springs(end),
+        nodal_reaction=end.reaction.reshape(-1, model.dim),
     )
     return step, acting
 

@@ -18,6 +18,7 @@ from abut.decks.couplings import couplings, reference_loads, reference_nodes, un
 from abut.decks.elastic import elastic_law
 from abut.decks.friction import friction_options, path_notes
 from abut.decks.large import finite_notes, is_finite, load_steps, plastic_steps, unsupported, yields
+from abut.decks.output import output_options, tables, with_tables
 from abut.decks.overclosure import overclosure_notes, own_laws, softened
 from abut.decks.plane import plane_of, thickness
 from abut.decks.rigid import join, rigid_bodies, with_parts_coupled
@@ -56,6 +57,7 @@ from abut.model import (
     Temperature,
     Term,
 )
+from abut.output.options import Output
 from abut.types import Json
 
 AXES = "xyz"
@@ -66,12 +68,13 @@ SAME_WAY = (
 
 @dataclass(frozen=True)
 class Translation:
-    """A model, what was put in place of something else (notes), and what was left out because the user said so."""
+    """A model, what was put in place of something else (notes), what the user left out; output: result files."""
 
     model: Model
     notes: tuple[str, ...]
     ignored: tuple[str, ...]
     own_laws: Mapping[str, PressureOverclosure] = field(default_factory=dict)
+    output: Output = field(default_factory=Output)
 
 
 def load_deck(path: Path, ignore: Collection[str] = (), soft: bool = False) -> Translation:
@@ -119,6 +122,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     notes += [*_idle(deck, groups), *unlisted_notes(deck)]
     references = dict(zip([*moving, *(coupling.name for coupling in bound)], reference_nodes(deck)))
     prescribed = _prescribed(deck, groups, parts, plane, references, notes, reasons)
+    asked = tables(deck, groups, notes)
     reasons.tell()
     mesh = build(Mesh, groups.raw(), deck.path)
     notes += mesh.notes
@@ -149,7 +153,8 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
         kinematics="finite" if finite else "small",
         solve=load_steps(deck) if finite else plastic_steps(deck) if yields(deck) else _options(deck),
     )
-    return Translation(model, tuple(notes), deck.ignored, laws)
+    model, output = with_tables(model, deck, asked, notes), output_options(model, deck, notes)
+    return Translation(model, tuple(notes), deck.ignored, laws, output)
 
 
 def _referenced(

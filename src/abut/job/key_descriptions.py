@@ -331,12 +331,13 @@ MEANINGS: dict[str, dict[str, str]] = {
         "name": "a name of your choice, also of its file probe_NAME.csv",
         "at": "a point of the undeformed mesh [length]",
         "line": "two points, start and end [length]",
-        "on": "name of the node set or surface whose nodes are read",
+        "on": "name of the node set, surface or body whose nodes are read",
         "points": "how many points on the line, both ends among them; left out: 50",
         "of": "what to read; left out: all there is, plastic strains only where a body may yield, pressure and gap only on "
-        "surfaces of contacts",
+        "surfaces of contacts, principal stresses and reactions not at all",
         "contact": "name of the contact whose pressure and gap are read; left out: the one that the probe lies on",
         "body": "name of the body that is read where points lie on several; left out: the first in the mesh",
+        "steps": "steps in its table: all, last, n for every n-th, or a list of numbers; the last one always is",
     },
     "SolveTable": {
         "steps": "load steps, equal parts of a linear ramp; auto: one, with friction as many as the onset of slip takes. "

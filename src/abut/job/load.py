@@ -138,6 +138,7 @@ def _deck(path: Path, refine: int, ignore: Collection[str], soft: bool) -> Job:
         deck.notes,
         ignored=deck.ignored,
         own_laws=deck.own_laws,
+        output=deck.output,
     )
 
 

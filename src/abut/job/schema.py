@@ -19,7 +19,8 @@ from abut.model.coupling import Coupling
 from abut.model.kinematics import KINEMATICS
 from abut.model.probe import QUANTITIES
 from abut.model.solve_options import LINEAR, SolveOptions
-from abut.output.options import FIELDS, FORMATS, STEPS, USUAL, VTU
+from abut.model.step_choice import WORDS as STEPS
+from abut.output.options import FIELDS, FORMATS, USUAL, VTU
 from abut.types import Json
 
 Points = Annotated[
@@ -322,6 +323,7 @@ class ProbeTable(Table):
     of: list[Annotated[str, OneOf(QUANTITIES)]] | None = None
     contact: str | None = None
     body: str | None = None
+    steps: int | list[int] | Annotated[str, OneOf(STEPS)] = "all"
 
 
 class SolveTable(Table):

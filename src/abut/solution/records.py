@@ -55,8 +55,9 @@ class ProbeResult:
 
     points: (n, dim) coordinates in the undeformed mesh, length; distance: (n,) along the line from its start, length, and
     nodes: (n,) numbers of the mesh's points, each None where the probe is no line or no set.
-    values: by name displacement (n, dim), stress (n, 6) xx yy zz xy yz zx, von_mises (n,), plastic_strain (n, 6),
-    equivalent_plastic_strain, pressure, gap (n,), as far as asked for; NaN where a quantity does not exist at a point.
+    values: by name displacement and reaction (n, dim), stress (n, 6) xx yy zz xy yz zx, von_mises (n,), principal_stress
+    (n, 3), plastic_strain (n, 6), equivalent_plastic_strain, pressure, gap (n,), as far as asked for; NaN where a quantity
+    does not exist at a point.
     """
 
     name: str
@@ -125,6 +126,9 @@ class Step:
     flow: Flow | None = None  # None where no material yields
     preloads: Mapping[str, PreloadResult] = field(default_factory=dict)
     springs: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)  # force (dim,) on what each is on
+    nodal_reaction: NDArray[np.float64] | None = (
+        None  # (n_points, dim) of supports, equations and what moves with others
+    )
 
     def __repr__(self) -> str:
         """The main numbers, in some lines."""

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.io.deck.elements import ElementType
+from abut.io.deck.output_cards import Request
 from abut.io.deck.reasons import Place
 
 Numbers = NDArray[np.int64]
@@ -332,6 +333,7 @@ class Deck:
     small_sliding: bool = False
     couplings: tuple[Coupling, ...] = ()
     springs: tuple[Spring, ...] = ()
+    requests: tuple[Request, ...] = ()
 
     @property
     def references(self) -> frozenset[int]:
