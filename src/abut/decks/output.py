@@ -150,7 +150,8 @@ def _places(model: Model, asked: Asked) -> Iterable[tuple[str, str, str | None]]
 def _steps(model: Model, deck: Deck, among: Sequence[Request], notes: list[str]) -> StepChoice:
     """Of the load steps those that any of some requests wants: in each step of a deck every n-th, and its last."""
     count, times = len(deck.steps), ends(deck)
-    if all(request.every == 1 and request.first <= 1 and request.last in (None, count) for request in among):
+    whole = [request for request in among if request.every == 1]
+    if {step for r in whole for step in range(max(r.first, 1), (r.last or count) + 1)} == set(range(1, count + 1)):
         return "all"
     if model.finite and (model.contacts or model.solve.steps == "auto"):
         notes.append(

@@ -105,6 +105,7 @@ def job_table(model: Model, mesh: str, output: Output = EVERYTHING) -> Json:
         "couplings",
         "preloads",
         "springs",
+        "holds",
         "probes",
     ):
         kinds: dict[str, Callable[[Any], Json]] = {"loads": _load, "contacts": _contact}

@@ -16,6 +16,7 @@ from abut.job.table import Number, OneOf, Table
 from abut.model.contact import GEOMETRIES, KINDS, LAWS, METHODS, PRESSURES, RULES, Contact, Integration
 from abut.model.coupling import KINDS as COUPLINGS
 from abut.model.coupling import Coupling
+from abut.model.hold import STAY, Hold
 from abut.model.kinematics import KINEMATICS
 from abut.model.probe import QUANTITIES
 from abut.model.solve_options import LINEAR, SolveOptions
@@ -174,6 +175,24 @@ class SpringTable(Table):
     per_area: bool = False
     weak: bool = False
     point: list[Number] | None = None
+
+
+Led = Annotated[Any, WithJsonSchema({"anyOf": [{"type": "number"}, {"const": STAY}]})]
+
+
+class HoldTable(Table):
+    """a support that comes or goes on the way"""
+
+    on: str
+    name: str = ""
+    x: Led = None
+    y: Led = None
+    z: Led = None
+    since: Number = Hold.since
+    reached: Number | None = None
+    until: Number | None = None
+    released: Number | None = None
+    amplitude: Points | None = None
 
 
 class PreloadTable(Table):
@@ -358,6 +377,7 @@ class JobFile(Table):
     couplings: list[CouplingTable] = []
     preloads: list[PreloadTable] = []
     springs: list[SpringTable] = []
+    holds: list[HoldTable] = []
     probes: list[ProbeTable] = []
     solve: SolveTable = SolveTable()
     output: OutputTable = OutputTable()
