@@ -29,6 +29,7 @@ if TYPE_CHECKING:
         Equation,
         Force,
         Gravity,
+        Hold,
         Integration,
         Model,
         Moment,
@@ -69,7 +70,7 @@ _HOME = {  # of public names that do not come from abut.model
 
 __all__ = [
     "AbutError", "Amplitude", "Anisotropic", "ArrudaBoyce", "Axes", "BodyForce", "Centrifugal", "Contact",
-    "ConvergenceError", "Coupling", "Equation", "Force", "FoundContact", "Gravity", "Hencky", "InputError",
+    "ConvergenceError", "Coupling", "Equation", "Force", "FoundContact", "Gravity", "Hencky", "Hold", "InputError",
     "Integration", "LinearElastic", "Mesh", "Model", "Moment", "MooneyRivlin", "NeoHooke", "NodalForce", "Ogden",
     "Orthotropic", "Output", "OverTemperature", "Plastic", "Preload", "Pressure", "PressureOverclosure", "Probe",
     "Rigid", "Rotation", "SingularModelError", "Solid", "Solution", "SolveOptions", "Spring", "Support", "Temperature",

@@ -212,14 +212,6 @@ def test_faults_of_a_deck_are_named(old, new, words, tmp_path):
         load(tmp_path, DECK.replace(old, new, 1) if old != "*END STEP\n" else DECK.replace(old, new))
 
 
-def test_supports_that_come_or_go_are_refused(tmp_path):
-    moved = DECK + step("*BOUNDARY, OP=NEW", "BOTTOM, 3, 3")
-    with pytest.raises(InputError, match=r"OP=NEW of step 2 lets node .* go again"):
-        load(tmp_path, moved)
-    with pytest.raises(InputError, match=r"node 15 is free in the step before and held in step 2"):
-        load(tmp_path, DECK + step("*BOUNDARY", "TOP, 3, 3, 0.1"))
-
-
 def test_what_was_ignored_stands_in_the_summary(tmp_path, capsys):
     deck = write(tmp_path, DECK.replace("*STEP", "*STEP, PERTURBATION"))
     assert main(["run", str(deck)]) == 2

@@ -1,4 +1,4 @@
-"""Preloads, springs and local axes in job files: read, refused with their place, written and read again."""
+"""Preloads, springs, holds and local axes in job files: read, refused with their place, written and read again."""
 
 from __future__ import annotations
 
@@ -28,6 +28,12 @@ name = "bed"
 on = "rod.top"
 normal = [[0, 0], [1, 1e6]]
 x = 5
+[[holds]]
+on = "rod.top"
+x = "stay"
+y = 0.25
+since = 0.5
+until = 0.75
 """
 
 
@@ -42,11 +48,13 @@ def test_a_job_says_what_records_say(tmp_path):
     model = job.model
     assert model.supports[1].axes == abut.Axes("cylindrical")
     assert model.springs == (abut.Spring("bed", "rod.top", normal=((0.0, 0.0), (1.0, 1e6)), x=5.0),)
+    assert model.holds == (abut.Hold("rod.top", x="stay", y=0.25, since=0.5, until=0.75),)
     (preload,) = model.preloads
     assert (preload.force, preload.lock, preload.body) == (100.0, 0.5, "rod")
     copy, _ = write_job(tmp_path / "copy.toml", job)
     again = load_job(copy).model
     assert (again.supports, again.springs, again.preloads) == (model.supports, model.springs, model.preloads)
+    assert again.holds == model.holds
     assert len(again.mesh.points) == len(model.mesh.points)
     last = abut.solve(again).steps[-1]
     assert last.preloads["M4"].tension == pytest.approx(100.0, rel=1e-4)

@@ -54,8 +54,9 @@ def test_records_check_themselves(case: str) -> None:
 BAD_MODELS: dict[str, tuple[Sequence[dict[str, Any]], str]] = {
     "three numbers in 2D": ([{"at": [0, 0, 0]}], "probes[0].at: expected 2 numbers for a point, got 3"),
     "a line in 3D": ([{"line": [[0, 0], [0, 0, 1]]}], "probes[0].line: expected 2 numbers for a point, got 3"),
-    "unknown set": ([{"on": "lower.topp"}], "probes[0].on: no surface or node set named 'lower.topp'; did you mean"),
-    "a body is no set": ([{"on": "lower"}], "probes[0].on: no surface or node set named 'lower'"),
+    "unknown set": ([{"on": "lower.topp"}], "probes[0].on: no surface, node set or body named 'lower.topp'; did you mean"),
+    "reaction at a point": ([{"at": [1, 0.5], "of": ["reaction"]}], "reaction is the force on nodes; give on"),
+    "steps": ([{"on": "lower", "steps": 0}], "probe 'p': steps: expected \"all\", \"last\", a number > 0"),
     "unknown body": ([{"at": [1, 0.5], "body": "lover"}], "probes[0].body: no body named 'lover'; did you mean 'lower'?"),
     "unknown contact": ([{"at": [1, 1], "contact": "block"}], "no contact named 'block'; did you mean 'blocks'?"),
     "twice": ([{"at": [1, 0.5]}, {"at": [1, 0.6]}], "probes[1].name: 'p' is used twice"),

@@ -20,7 +20,7 @@ ERRORS = {name for name in abut.__all__ if isinstance(getattr(abut, name), type)
 RESULTS = {"FoundContact", "Solution"}  # abut makes these
 LISTS = (
     "solids", "supports", "loads", "contacts", "equations", "rigid", "probes", "rotations", "couplings", "preloads",
-    "springs",
+    "springs", "holds",
 )  # fmt: skip
 
 BLOCKS = {"a": make.rectangle([0, 2], [0, 1], cells=[2, 1]), "b": make.rectangle([0, 2], [1, 2], cells=[2, 1])}
@@ -57,6 +57,7 @@ VALID: dict[str, tuple[dict[str, Any], Callable[[Any], object]]] = {  # argument
     "Equation": ({"terms": [abut.Term(0, "y", 1.0)]}, within("equations")),
     "Force": ({"on": "b.right", "value": (1.0, 0.0)}, within("loads")),
     "Gravity": ({"value": (1.0, 0.0)}, within("loads")),
+    "Hold": ({"on": "b.right", "x": 0.0}, within("holds")),
     "Hencky": ({"young": 1.0, "poisson": 0.3}, kept),
     "Integration": ({}, kept),
     "LinearElastic": ({"young": 1.0, "poisson": 0.3}, kept),

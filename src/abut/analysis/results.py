@@ -37,6 +37,7 @@ from abut.problem.body_terms import heated
 from abut.problem.constraints import Constraints
 from abut.problem.follower_loads import FollowerLoads
 from abut.problem.held_motions import HeldMotions, held_force
+from abut.problem.holds import Holds
 from abut.problem.pair import Pair
 from abut.problem.preloads import LockedPreloads
 from abut.problem.problem import ContactProblem
@@ -59,8 +60,8 @@ class _End:
     """A model at the end of a load step. displacement, internal, loads, reaction: (dim n_points,) without rigid motions on
     springs, forces of stresses, of loads, of supports and links; following: those of loads that follow the deformation,
     and of other physics;
-    locked, sprung: of preloads that are locked, of springs and
-    of what holds neutral motions; pressures: (n,) of each pair; cycling: (n,) multipliers that
+    locked, sprung: of preloads that are locked, of springs and of what holds neutral motions; held: of supports that
+    come and go, part of the reaction; pressures: (n,) of each pair; cycling: (n,) multipliers that
     keep changing; supports: of each pair int H_k over all of the deformed contactor, (n_functions,), where it may meet the
     target anywhere, else None."""
 
@@ -76,6 +77,7 @@ class _End:
     following: NDArray[np.float64]
     locked: NDArray[np.float64]
     sprung: NDArray[np.float64]
+    held: NDArray[np.float64]
     cycling: NDArray[np.bool_]
     flow: Flow | None
     supports: Sequence[NDArray[np.float64] | None]
@@ -121,7 +123,7 @@ def step_result(
         reaction=(end.reaction + end.sprung).reshape(-1, model.dim).sum(axis=0),
         reactions={
             on: by_supports[_with_bodies(model.mesh.nodes_of(on), constraints.bodies)].sum(axis=0)
-            for on in {s.on: s for s in model.supports}
+            for on in dict.fromkeys([*(s.on for s in model.supports), *(hold.on for hold in model.holds)])
         },
         load=assembled.loaded.resultant @ balance.factors + end.following.reshape(-1, model.dim).sum(axis=0),
         contacts=contacts,
@@ -145,6 +147,7 @@ def step_result(
         flow=end.flow,
         preloads=_preloads(end, linked),
         springs=_springs(end),
+        nodal_reaction=end.reaction.reshape(-1, model.dim),
     )
     return step, acting
 
@@ -183,11 +186,12 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
             sprung -= term.evaluate(motion, motion).force
     if HeldMotions.name in balance.forces:
         sprung -= balance.forces[HeldMotions.name]
+    held = -balance.forces.get(Holds.name, np.zeros_like(displacement))
     loads = assembled.loaded.forces @ balance.factors + following + locked + sprung
     reaction = internal - loads - contact_force
     return _End(
         problem, balance, state, motion, displacement, pressures, internal, loads, reaction, following, locked, sprung,
-        cycling, flow(problem.model.deformable, motion.history), supports,
+        held, cycling, flow(problem.model.deformable, motion.history), supports,
     )  # fmt: skip
 
 
@@ -206,8 +210,8 @@ def _energy(
         return None, None
     largest = max(float(np.abs(force).max(initial=0.0)) for force in (end.internal, end.loads))
     now = Acting(
-        end.displacement, constraints.prescribed @ balance.factors, end.internal, end.loads, end.reaction,
-        _pressed(end), tractions(balance.pairs, end.pressures), end.state.unknowns,
+        end.displacement, constraints.prescribed @ balance.factors, end.internal, end.loads + end.held,
+        end.reaction - end.held, _pressed(end), tractions(balance.pairs, end.pressures), end.state.unknowns,
         largest * max(attempt.iterations[-1].residual, DEFAULT.newton.balanced), end.flow.work if end.flow else 0.0,
     )  # fmt: skip
     if not isinstance(acted, Acting):
@@ -234,7 +238,7 @@ def _finite_energy(
     if not isinstance(acted, FiniteActing):
         acted = FiniteActing.none(problem.constraints.near(np.zeros_like(state.unknowns), weights(histories, 0.0)).free)
     now = FiniteActing(
-        end.displacement, end.internal, end.loads, end.reaction, pressed,
+        end.displacement, end.internal, end.loads + end.held, end.reaction - end.held, pressed,
         end.internal - end.loads - end.reaction - pressed, balance.energy, state.unknowns,
         problem.constraints.near(state.unknowns, weights(histories, state.time)).free, left,
         drag_of(state) if is_dragged(state) else None, end.flow.work if end.flow else 0.0,

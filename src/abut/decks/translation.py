@@ -17,13 +17,16 @@ from abut.decks.clearance import bilateral_note, gap_options
 from abut.decks.couplings import couplings, reference_loads, reference_nodes, unlisted_notes
 from abut.decks.elastic import elastic_law
 from abut.decks.friction import friction_options, path_notes
+from abut.decks.holds import holds
 from abut.decks.large import finite_notes, is_finite, load_steps, plastic_steps, unsupported, yields
 from abut.decks.metal import metal_law
+from abut.decks.output import output_options, tables, with_tables
 from abut.decks.overclosure import overclosure_notes, own_laws, softened
 from abut.decks.plane import plane_of, thickness
 from abut.decks.rigid import join, rigid_bodies, with_parts_coupled
 from abut.decks.rubber import of_rubber
 from abut.decks.springs import spring_notes, springs
+from abut.decks.temperatures import history, temperatures
 from abut.decks.thin import thickened
 from abut.detection import add_surfaces, find_contacts
 from abut.errors import InputError
@@ -35,7 +38,7 @@ from abut.io.deck.pretension import cut
 from abut.io.deck.reasons import DeckError, Reasons
 from abut.io.deck.record import Deck, GeneralContact, Numbers, Pair
 from abut.io.deck.ties import near, tie_notes
-from abut.io.deck.time_histories import Course, combine, courses, scaled, times, zero
+from abut.io.deck.time_histories import Course, courses, scaled, times, zero
 from abut.materials.material import Material
 from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
@@ -45,6 +48,7 @@ from abut.model import (
     Contact,
     Coupling,
     Equation,
+    Hold,
     Load,
     Model,
     NodalForce,
@@ -54,9 +58,9 @@ from abut.model import (
     SolveOptions,
     Spring,
     Support,
-    Temperature,
     Term,
 )
+from abut.output.options import Output
 from abut.types import Json
 
 AXES = "xyz"
@@ -67,12 +71,13 @@ SAME_WAY = (
 
 @dataclass(frozen=True)
 class Translation:
-    """A model, what was put in place of something else (notes), and what was left out because the user said so."""
+    """A model, what was put in place of something else (notes), what the user left out; output: result files."""
 
     model: Model
     notes: tuple[str, ...]
     ignored: tuple[str, ...]
     own_laws: Mapping[str, PressureOverclosure] = field(default_factory=dict)
+    output: Output = field(default_factory=Output)
 
 
 def load_deck(path: Path, ignore: Collection[str] = (), soft: bool = False) -> Translation:
@@ -121,6 +126,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     notes += [*_idle(deck, groups), *unlisted_notes(deck)]
     references = dict(zip([*moving, *(coupling.name for coupling in bound)], reference_nodes(deck)))
     prescribed = _prescribed(deck, groups, parts, plane, references, notes, reasons)
+    asked = tables(deck, groups, notes)
     reasons.tell()
     mesh = build(Mesh, groups.raw(), deck.path)
     notes += mesh.notes
@@ -140,18 +146,16 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     model = Model(
         mesh,
         solids=solids,
-        supports=prescribed.supports,
-        loads=prescribed.loads,
         contacts=contacts,
-        equations=prescribed.equations,
         rigid=rigid,
         couplings=bound,
-        springs=prescribed.springs,
+        **vars(prescribed),
         plane=plane,
         kinematics="finite" if finite else "small",
         solve=load_steps(deck) if finite else plastic_steps(deck) if yields(deck) else _options(deck),
     )
-    return Translation(model, tuple(notes), deck.ignored, laws)
+    model, output = with_tables(model, deck, asked, notes), output_options(model, deck, notes)
+    return Translation(model, tuple(notes), deck.ignored, laws, output)
 
 
 def _referenced(
@@ -175,6 +179,7 @@ class _Prescribed:
     equations: list[Equation]
     loads: list[Load]
     springs: list[Spring]
+    holds: list[Hold]
 
 
 def _prescribed(
@@ -185,17 +190,18 @@ def _prescribed(
     thick = 1.0
     with reasons.gathered():
         thick = thickness(deck, plane, notes)
-    result = _Prescribed([], [], [], [])
+    result = _Prescribed([], [], [], [], [])
     with reasons.gathered():
         result.springs.extend(springs(deck, groups, plane, thick))
     with reasons.gathered():
         bound = bonds(deck, groups, plane)
         result.supports.extend(_supports(bound, groups))
+        result.holds.extend(holds(bound, groups))
         result.equations.extend(_equations(bound, groups))
         result.loads.extend(_forces(bound, groups, plane, thick))
     with reasons.gathered():
         result.loads.extend(reference_loads(deck, references, plane, thick))
-    for others in (_pressures(deck, groups), body_loads(deck, parts, plane), _temperatures(deck, groups)):
+    for others in (_pressures(deck, groups), body_loads(deck, parts, plane), temperatures(deck, groups)):
         with reasons.gathered():
             result.loads.extend(others)
     return result
@@ -238,11 +244,6 @@ def _solid(deck: Deck, name: str, piece: Piece, plane: str | None) -> Solid:
     except InputError as error:
         raise DeckError(material.place, f"*MATERIAL '{material.name}': {error}") from None
     return Solid(name, law, integration=piece.integration)
-
-
-def _history(course: Course) -> tuple[float, Amplitude | None]:
-    size, unit = scaled(course)
-    return size, None if unit is None else Amplitude(unit)
 
 
 def _contact(deck: Deck, groups: Groups, pair: Pair, hard: Numbers, notes: list[str]) -> Contact:
@@ -332,7 +333,7 @@ def _equations(bound: Bonds, groups: Groups) -> list[Equation]:
     return [
         Equation(
             tuple(Term(groups.node_set(np.array([n]), f"n{n}"), AXES[k], c) for (n, k), c in bond.terms.items()),
-            *_history(bond.course),
+            *history(bond.course),
         )
         for bond in bound.bonds
     ]
@@ -362,31 +363,7 @@ def _pressures(deck: Deck, groups: Groups) -> Iterator[Load]:
             number = int(element)
             alike.setdefault(course, []).append((number, FACES[kinds[number]][int(face) - 1]))
     for i, (course, rows) in enumerate(alike.items(), start=1):
-        yield Pressure(groups.facets(np.array(rows, np.int64), f"pressure-{i}"), *_history(course))
-
-
-def _temperatures(deck: Deck, groups: Groups) -> Iterator[Load]:
-    """Changes from the initial temperature."""
-    for step in deck.steps:
-        for value in step.values:
-            if value.kind == "temperature":
-                for node in [n for n in value.numbers.tolist() if n not in deck.initial][:1]:
-                    raise DeckError(
-                        value.place,
-                        f"*TEMPERATURE: node {node} has no temperature to begin with; add "
-                        "*INITIAL CONDITIONS, TYPE=TEMPERATURE",
-                    )
-    alike: dict[Course, list[int]] = {}
-    for (node, *_), course in courses(deck, "temperature", lambda key: deck.initial[int(key[0])]).items():
-        change = combine([(1.0, course), (-deck.initial[int(node)], ((0.0, 1.0),))])
-        if not zero(change):
-            alike.setdefault(change, []).append(int(node))
-    count = 0
-    for change, nodes in alike.items():
-        here = np.intersect1d(np.array(nodes, np.int64), groups.used)
-        if len(here):
-            count += 1
-            yield Temperature(groups.node_set(here, f"temperature-{count}"), *_history(change))
+        yield Pressure(groups.facets(np.array(rows, np.int64), f"pressure-{i}"), *history(course))
 
 
 def _options(deck: Deck) -> SolveOptions:

@@ -40,6 +40,7 @@ from abut.model import (
     Temperature,
     Traction,
 )
+from abut.output.options import EVERYTHING, Output
 from abut.types import Json
 
 KINDS: dict[type, str] = {
@@ -66,7 +67,7 @@ def write_job(path: Path, job: Job) -> list[Path]:
 
     Raises InputError for what a job file cannot hold (functions of position) and where a file cannot be written."""
     mesh = path.with_suffix(".vtu")
-    table = job_table(job.model, mesh.name)
+    table = job_table(job.model, mesh.name, job.output)
     JobFile.model_validate(table)
     head = [f"# from {job.path.name}"]
     head += [f"# ignored: {what}" for what in job.ignored] + [f"# {note}" for note in job.notes]
@@ -75,7 +76,7 @@ def write_job(path: Path, job: Job) -> list[Path]:
     return [path, mesh]
 
 
-def job_table(model: Model, mesh: str) -> Json:
+def job_table(model: Model, mesh: str, output: Output = EVERYTHING) -> Json:
     """The job file of a model as nested tables, with ``mesh`` the file of its mesh."""
     materials: dict[Material, str] = {}
     for solid in model.solids:
@@ -104,6 +105,7 @@ def job_table(model: Model, mesh: str) -> Json:
         "couplings",
         "preloads",
         "springs",
+        "holds",
         "probes",
     ):
         kinds: dict[str, Callable[[Any], Json]] = {"loads": _load, "contacts": _contact}
@@ -114,6 +116,8 @@ def job_table(model: Model, mesh: str) -> Json:
     options = _plain(model.solve)
     if options:
         table["solve"] = options
+    if written := _plain(output):
+        table["output"] = written
     return table
 
 

@@ -33,6 +33,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "couplings": "points that move with a reference point, which carries forces and moments",
         "preloads": "bolts that are tightened: sections of bodies whose sides are drawn together",
         "springs": "springs to the ground, between points, and beds under surfaces",
+        "holds": "supports that come or go on the way",
         "rotations": "surfaces, node sets and bodies that turn about an axis; not with small kinematics",
         "probes": "points, lines and sets of nodes whose results are listed for every step",
         "solve": "load steps, linear solver, iterations",
@@ -283,6 +284,18 @@ MEANINGS: dict[str, dict[str, str]] = {
         "per_area": "of a surface: all these per area (force/length^3, force/length^2)",
         "weak": "only there to keep loose parts in place: the certificate judges its force",
     },
+    "HoldTable": {
+        "on": "name of the surface, node set or body",
+        "name": "for results; left out: that of on",
+        "x": "displacement along x, that of the undeformed mesh; stay: wherever it is at since; left out: free [length]",
+        "y": "the same along y [length]",
+        "z": "the same along z [length]",
+        "since": "time from which on it acts",
+        "reached": "time at which displacements are what is prescribed; left out: until, or the end",
+        "until": "time up to which it acts; left out: to the end",
+        "released": "time at which its force is gone; left out: the end",
+        "amplitude": "of x, y, z over time; left out: from 0 at since to 1 at reached",
+    },
     "PreloadTable": {
         "name": "a name of your choice, used in messages and results",
         "body": "name of the body, which abut cuts open at the cells next to a plane",
@@ -333,12 +346,13 @@ MEANINGS: dict[str, dict[str, str]] = {
         "name": "a name of your choice, also of its file probe_NAME.csv",
         "at": "a point of the undeformed mesh [length]",
         "line": "two points, start and end [length]",
-        "on": "name of the node set or surface whose nodes are read",
+        "on": "name of the node set, surface or body whose nodes are read",
         "points": "how many points on the line, both ends among them; left out: 50",
         "of": "what to read; left out: all there is, plastic strains only where a body may yield, pressure and gap only on "
-        "surfaces of contacts",
+        "surfaces of contacts, principal stresses and reactions not at all",
         "contact": "name of the contact whose pressure and gap are read; left out: the one that the probe lies on",
         "body": "name of the body that is read where points lie on several; left out: the first in the mesh",
+        "steps": "steps in its table: all, last, n for every n-th, or a list of numbers; the last one always is",
     },
     "SolveTable": {
         "steps": "load steps, equal parts of a linear ramp; auto: one, with friction as many as the onset of slip takes. "

@@ -36,6 +36,7 @@ from abut.model import (
     Equation,
     Force,
     Gravity,
+    Hold,
     Load,
     Model,
     Moment,
@@ -156,6 +157,7 @@ def _deck(path: Path, refine: int, ignore: Collection[str], soft: bool) -> Job:
         deck.notes,
         ignored=deck.ignored,
         own_laws=deck.own_laws,
+        output=deck.output,
     )
 
 
@@ -184,6 +186,7 @@ def _model(file: JobFile, folder: Path, refine: int) -> tuple[Model, Resolved]:
         couplings=[Coupling(**values(c, f"couplings[{i}]")) for i, c in enumerate(file.couplings)],
         preloads=[Preload(**values(p, f"preloads[{i}]")) for i, p in enumerate(file.preloads)],
         springs=[Spring(**values(s, f"springs[{i}]")) for i, s in enumerate(file.springs)],
+        holds=[Hold(**values(h, f"holds[{i}]")) for i, h in enumerate(file.holds)],
         probes=[Probe(**values(probe, f"probes[{i}]")) for i, probe in enumerate(file.probes)],
     )
     return model, resolved

@@ -16,10 +16,12 @@ from abut.job.table import Number, OneOf, Table
 from abut.model.contact import GEOMETRIES, KINDS, LAWS, METHODS, PRESSURES, RULES, Contact, Integration
 from abut.model.coupling import KINDS as COUPLINGS
 from abut.model.coupling import Coupling
+from abut.model.hold import STAY, Hold
 from abut.model.kinematics import KINEMATICS
 from abut.model.probe import QUANTITIES
 from abut.model.solve_options import LINEAR, SolveOptions
-from abut.output.options import COMPRESSIONS, FAST, FIELDS, FORMATS, STEPS, USUAL, VTU
+from abut.model.step_choice import WORDS as STEPS
+from abut.output.options import COMPRESSIONS, FAST, FIELDS, FORMATS, USUAL, VTU
 from abut.types import Json
 
 Points = Annotated[
@@ -175,6 +177,24 @@ class SpringTable(Table):
     point: list[Number] | None = None
 
 
+Led = Annotated[Any, WithJsonSchema({"anyOf": [{"type": "number"}, {"const": STAY}]})]
+
+
+class HoldTable(Table):
+    """a support that comes or goes on the way"""
+
+    on: str
+    name: str = ""
+    x: Led = None
+    y: Led = None
+    z: Led = None
+    since: Number = Hold.since
+    reached: Number | None = None
+    until: Number | None = None
+    released: Number | None = None
+    amplitude: Points | None = None
+
+
 class PreloadTable(Table):
     """a section of a body whose two sides are drawn together, as tightening does to a bolt"""
 
@@ -322,6 +342,7 @@ class ProbeTable(Table):
     of: list[Annotated[str, OneOf(QUANTITIES)]] | None = None
     contact: str | None = None
     body: str | None = None
+    steps: int | list[int] | Annotated[str, OneOf(STEPS)] = "all"
 
 
 class SolveTable(Table):
@@ -358,6 +379,7 @@ class JobFile(Table):
     couplings: list[CouplingTable] = []
     preloads: list[PreloadTable] = []
     springs: list[SpringTable] = []
+    holds: list[HoldTable] = []
     probes: list[ProbeTable] = []
     solve: SolveTable = SolveTable()
     output: OutputTable = OutputTable()

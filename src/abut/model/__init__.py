@@ -5,6 +5,7 @@ from abut.model.body_forces import BodyForce, Centrifugal, Gravity, Load
 from abut.model.conditions import Amplitude, Equation, History, Rigid, Support, Term
 from abut.model.contact import LAWS, METHODS, PRESSURES, RULES, Contact, Integration
 from abut.model.coupling import Coupling
+from abut.model.hold import Hold
 from abut.model.loads import Force, Moment, NodalForce, Pressure, Temperature, Traction
 from abut.model.model import PLANES, Model
 from abut.model.preload import Preload
@@ -16,7 +17,7 @@ from abut.model.spring import Spring
 
 __all__ = [
     "LAWS", "METHODS", "PLANES", "PRESSURES", "RULES", "Amplitude", "Axes", "BodyForce", "Centrifugal", "Contact",
-    "Coupling", "Equation", "Force", "Gravity", "History", "Integration", "Load", "Model", "Moment", "NodalForce",
+    "Coupling", "Equation", "Force", "Gravity", "History", "Hold", "Integration", "Load", "Model", "Moment", "NodalForce",
     "Preload", "Pressure", "Probe", "Rigid", "Rotation", "Solid", "SolveOptions", "Spring", "Support", "Temperature",
     "Term", "Traction",
 ]  # fmt: skip

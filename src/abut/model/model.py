@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import chain
 from typing import get_args
 
 import numpy as np
@@ -37,6 +38,7 @@ from abut.model.conditions import COMPONENTS, Equation, History, Rigid, Support
 from abut.model.consistency import check_equations, check_filled, check_loads, check_rigid, check_supports
 from abut.model.contact import GEOMETRIES, Contact
 from abut.model.coupling import Coupling, check_couplings, moving_points
+from abut.model.hold import STAY, Hold, check_holds
 from abut.model.kinematics import check_finite, check_kinematics
 from abut.model.physics import TEMPERATURE, Physics, dofs_of
 from abut.model.preload import Preload, cut_sections
@@ -53,7 +55,7 @@ PLANES = ("strain", "stress", "axisymmetric")
 RECORDS: dict[str, tuple[type, ...]] = {  # what the lists of a model are of
     "solids": (Solid,), "supports": (Support,), "loads": get_args(Load), "contacts": (Contact,), "equations": (Equation,),
     "rigid": (Rigid,), "probes": (Probe,), "rotations": (Rotation,), "couplings": (Coupling,), "preloads": (Preload,),
-    "springs": (Spring,),
+    "springs": (Spring,), "holds": (Hold,),
 }  # fmt: skip
 
 
@@ -97,8 +99,8 @@ class Model:
         Points that move with a reference.
     preloads : sequence of Preload
         Bolts that are tightened; the mesh is cut open at their sections.
-    springs : sequence of Spring
-        To the ground, between points, and beds under surfaces.
+    springs, holds : sequences of Spring and of Hold
+        Springs to the ground, between points, beds under surfaces; supports that come or go.
     physics : sequence of abut.model.physics.Physics
         Fields beside displacements, with terms of their own in the balance; on one process, with the direct solver.
 
@@ -142,6 +144,7 @@ class Model:
     preloads: Sequence[Preload] = ()
     springs: Sequence[Spring] = ()
     physics: Sequence[Physics] = ()
+    holds: Sequence[Hold] = ()
 
     def __post_init__(self) -> None:
         checks.instance(self.mesh, MeshRecord, "model: mesh", "a mesh (abut.Mesh)")
@@ -160,6 +163,7 @@ class Model:
         check_loads(self.mesh, self.loads, {body.body for body in self.rigid}, {c.name for c in self.couplings})
         self._check_contacts()
         check_springs(self.mesh, self.springs)
+        object.__setattr__(self, "holds", check_holds(self.mesh, self.holds))
         check_kinematics(self.kinematics, self.solids)
         moving = moving_points(self.mesh, self.rigid, self.couplings)
         check_rotations(self.mesh, self.rotations, self.supports, moving, self.kinematics)
@@ -217,11 +221,9 @@ class Model:
     @property
     def histories(self) -> tuple[History, ...]:
         """The different histories of everything prescribed, the ramp first."""
-        given = (
-            *self.supports, *self.loads, *self.equations, *self.rigid, *self.contacts, *self.rotations, *self.preloads,
-        )  # fmt: skip
-        amplitudes = [item.amplitude for item in given] + [coupling.amplitude for coupling in self.couplings]
-        friction = (contact.friction_amplitude for contact in self.contacts)
+        given = (*self.supports, *self.loads, *self.equations, *self.rigid, *self.contacts, *self.rotations)
+        amplitudes = [item.amplitude for item in (*given, *self.preloads, *self.couplings)]
+        friction = [contact.friction_amplitude for contact in self.contacts]
         of_rigid = (history for body in self.referenced for history in body.amplitudes.values())
         others = (history for item in self.physics for history in item.amplitudes)
         return tuple(dict.fromkeys([None, *amplitudes, *friction, *of_rigid, *others]))
@@ -230,16 +232,16 @@ class Model:
     def ends(self) -> tuple[float, ...]:
         """Time at the end of each load step: those of ``solve``, and where the way matters (friction, large displacements,
         materials that are not linear) the corners of all histories, which a step across would never see."""
-        given = self.solve.ends
         rubs = any(contact.frictional for contact in self.contacts)
         if not (rubs or self.finite) and all(material.constant for material in self.materials.values()):
-            return with_corners(given, self.locking)
-        return with_corners(given, (*self.histories, *self.locking))
+            return with_corners(self.solve.ends, self.locking)
+        return with_corners(self.solve.ends, (*self.histories, *self.locking))
 
     @property
     def locking(self) -> tuple[History, ...]:
-        """Histories with a corner where a preload is locked: load steps end there."""
-        return tuple(history for preload in self.preloads for history in preload.locking)
+        """Histories with a corner where a preload is locked, or a hold comes or goes: load steps end there."""
+        each = [*(preload.locking for preload in self.preloads), *(hold.locking for hold in self.holds)]
+        return tuple(chain.from_iterable(each))
 
     def sides(self, contact: Contact) -> Sides:
         """Contactor and target of one of the contacts as surfaces; bodies as far as they can meet the other side."""
@@ -286,7 +288,8 @@ class Model:
         """The largest displacement that is prescribed as a number."""
         supports = [(getattr(s, name), s.amplitude) for s in self.supports for name in (*COMPONENTS, "normal")]
         rigid = [(getattr(body, name), body.history(name)) for body in self.referenced for name in COMPONENTS]
-        values = [(v, 1.0 if history is None else history.largest) for v, history in (*supports, *rigid)]
+        held = [(value, hold.amplitude) for hold in self.holds for value in hold.components.values() if value != STAY]
+        values = [(v, 1.0 if history is None else history.largest) for v, history in (*supports, *rigid, *held)]
         return max((abs(float(v)) * f for v, f in values if v is not None and not callable(v)), default=0.0)
 
     def temperatures(self, time: float) -> dict[str, float]:

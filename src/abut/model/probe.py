@@ -9,9 +9,12 @@ from typing import Any
 from abut import checks
 from abut.errors import InputError, nearest
 from abut.mesh.mesh import Mesh
+from abut.model.step_choice import StepChoice, check_steps
 
 YIELDED = ("plastic-strain", "equivalent-plastic-strain")  # where a body may yield
-IN_BODIES = ("displacement", "stress", "von-mises", *YIELDED)
+PRINCIPAL, REACTION = "principal-stress", "reaction"
+NAMED_ONLY = (PRINCIPAL, REACTION)  # read where they are asked for by name
+IN_BODIES = ("displacement", "stress", "von-mises", *NAMED_ONLY, *YIELDED)
 ON_CONTACTS = ("pressure", "gap")
 QUANTITIES = (*IN_BODIES, *ON_CONTACTS)
 POINTS = 50  # along a line, where the user does not say
@@ -33,18 +36,22 @@ class Probe:
     line : ((dim,), (dim,)) of float, optional
         Start and end of a line [length].
     on : str, optional
-        A node set or surface.
+        A node set, surface or body.
     points : int, optional
         Of a line: in equal distances, both ends among them; 50 where left out.
     of : sequence of str, optional
-        "displacement", "stress", "von-mises", "plastic-strain", "equivalent-plastic-strain", "pressure", "gap"; left out:
-        all that exist there, plastic strains only where a body of the model may yield, pressure and gap only
-        where the place lies on a surface of a contact.
+        "displacement", "stress", "von-mises", "principal-stress", "reaction", "plastic-strain",
+        "equivalent-plastic-strain", "pressure", "gap"; left out: all that exist there, plastic strains only where a body
+        of the model may yield, pressure and gap only where the place lies on a surface of a contact, principal stresses
+        and reactions not at all. "reaction", with ``on``: the force of supports and links on each node.
     contact : str, optional
         Whose pressure and gap, where more than one is there.
     body : str, optional
         Whose displacement, stress and side of a contact, where points lie on several; the first in the order of the mesh
         where left out.
+    steps : str, int or sequence of int
+        Of the load steps in its table: "all", "last", n for every n-th, or a list of numbers; the last step is always
+        among them.
 
     Raises
     ------
@@ -67,6 +74,7 @@ class Probe:
     of: tuple[str, ...] | None = None
     contact: str | None = None
     body: str | None = None
+    steps: StepChoice = "all"
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not self.name.strip():
@@ -85,6 +93,11 @@ class Probe:
             object.__setattr__(self, "of", _quantities(self.of, f"{where}: of"))
             if self.contact is not None and not set(self.of) & set(ON_CONTACTS):
                 raise InputError(f"{where}: contact is for pressure and gap; leave it out, or add them to 'of'")
+        check_steps(self.steps, f"{where}: steps")
+        if self.of is not None and REACTION in self.of and self.on is None:
+            raise InputError(
+                f"{where}: {REACTION} is the force on nodes; give on (a node set, surface or body), or take it out of 'of'"
+            )
         if self.on is not None and self.body is not None:
             raise InputError(f"{where}: body is for points and lines; the nodes of '{self.on}' are read; leave it out")
 
@@ -118,7 +131,7 @@ def check_probes(probes: Sequence[Probe], mesh: Mesh, contacts: Collection[str])
             for point in points:
                 if point is not None and len(point) != mesh.dim:
                     raise InputError(f"{where}.{key}: expected {mesh.dim} numbers for a point, got {len(point)}")
-        _known(probe.on, [*mesh.surfaces, *mesh.node_sets], f"{where}.on", "surface or node set")
+        _known(probe.on, [*mesh.surfaces, *mesh.node_sets, *mesh.bodies], f"{where}.on", "surface, node set or body")
         _known(probe.body, mesh.bodies, f"{where}.body", "body")
         _known(probe.contact, contacts, f"{where}.contact", "contact")
         wanted = [name for name in probe.of or () if name in ON_CONTACTS]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from abut import checks
 from abut.errors import InputError
 from abut.materials.invariants import principal
+from abut.model.step_choice import StepChoice, check_steps, chosen
 from abut.solution.grids import Grid
 from abut.types import Array
 
@@ -24,7 +25,6 @@ MATERIAL = "material"  # what materials remember, such as plastic strains
 CONTACT = "contact"  # the files of contact surfaces
 FIELDS = (*ARRAYS, MATERIAL, CONTACT)
 USUAL = ("displacement", "stress", "von-mises", "stress-error", MATERIAL, CONTACT)
-STEPS = ("all", "last")
 VTU, FRD = "vtu", "frd"
 FORMATS = (VTU, FRD)
 FAST, SMALL = "fast", "small"
@@ -61,21 +61,13 @@ class Output:
     True
     """
 
-    steps: str | int | Sequence[int] = "all"
+    steps: StepChoice = "all"
     fields: Sequence[str] = USUAL
     formats: Sequence[str] = (VTU,)
     compression: str = FAST
 
     def __post_init__(self) -> None:
-        if isinstance(self.steps, str):
-            checks.choice(self.steps, "output.steps", STEPS)
-        else:
-            numbers = list(self.steps) if isinstance(self.steps, Iterable) else [self.steps]
-            if not numbers or any(isinstance(n, bool) or not isinstance(n, int) or n < 1 for n in numbers):
-                raise InputError(
-                    f'output.steps: expected "all", "last", a number > 0 or a list of such, got {self.steps!r}; 10 means '
-                    "every tenth step, [10] the tenth"
-                )
+        check_steps(self.steps, "output.steps")
         checks.choice(self.compression, "output.compression", COMPRESSIONS)
         for key, known in (("fields", FIELDS), ("formats", FORMATS)):
             given = getattr(self, key)
@@ -86,11 +78,7 @@ class Output:
 
     def wants(self, number: int, last: bool = False) -> bool:
         """Whether files of a step are written; last: it is the last one."""
-        if last or self.steps == "all":
-            return True
-        if isinstance(self.steps, str):
-            return False
-        return number % self.steps == 0 if isinstance(self.steps, int) else number in self.steps
+        return chosen(self.steps, number, last)
 
     @property
     def bodies(self) -> bool:

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from abut.io.names import file_labels
+from abut.model.step_choice import StepChoice, chosen
 from abut.probing.table import columns, peaks
 from abut.solution import ProbeResult, Step
 from abut.types import Json
@@ -19,15 +20,17 @@ def table_names(probes: Sequence[str]) -> list[str]:
     return [f"probe_{label}.csv" for label in file_labels(probes)]
 
 
-def table(steps: Sequence[Step], number: int) -> str:
-    """All values of probe ``number`` of the model as CSV: a row for each step and point; empty where there is no value."""
+def table(steps: Sequence[Step], number: int, of: StepChoice = "all") -> str:
+    """All values of probe ``number`` of the model as CSV: a row for each of the steps ``of`` and each point; empty where
+    there is no value."""
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
-    for step in steps:
+    shown = [step for step in steps if chosen(of, step.number, step is steps[-1])]
+    for step in shown:
         result = step.probes[number]
         place = _place(result)
         entries = {**place, **columns(result)}
-        if step is steps[0]:
+        if step is shown[0]:
             rows.writerow(["step", "factor", "converged", *entries])
         head = [step.number, step.factor, int(step.converged)]
         listed = zip(*(values.tolist() for values in entries.values()))
@@ -46,7 +49,8 @@ def _place(result: ProbeResult) -> Json:
 
 
 def summary(step: Step) -> list[Json]:
-    """Each probe in a few numbers: of one point its values, of several the values farthest from zero; None where none."""
+    """Each probe in a few numbers: of one point its values, of several the values farthest from zero, of reactions the
+    sum; None where none."""
     files = table_names([result.name for result in step.probes])
     return [
         {"name": result.name, "file": file, "points": len(result.points), **peaks(result)}

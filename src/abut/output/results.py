@@ -159,7 +159,7 @@ def write_index(folder: Path, solution: Solution, output: Output, final: bool = 
         _write_collection(folder, label, shown, [names[index] for names in files])
     write_text(folder / forces.FILE, forces.table(solution))
     for index, name in enumerate(probes.table_names([probe.name for probe in solution.model.probes])):
-        write_text(folder / name, probes.table(solution.steps, index))
+        write_text(folder / name, probes.table(solution.steps, index, solution.model.probes[index].steps))
     write_text(folder / "history.csv", _history(solution))
     write_text(folder / "run.jsonl", _log(solution))
     write_text(folder / "summary.json", json.dumps(summary(solution), indent=2, allow_nan=False) + "\n")

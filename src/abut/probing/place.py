@@ -16,7 +16,7 @@ from abut.materials.material import history_fields
 from abut.mesh.exterior import outside_of_body
 from abut.mesh.mesh import Mesh
 from abut.model import Contact, Model
-from abut.model.probe import IN_BODIES, ON_CONTACTS, POINTS, QUANTITIES, YIELDED, Probe
+from abut.model.probe import IN_BODIES, NAMED_ONLY, ON_CONTACTS, POINTS, QUANTITIES, YIELDED, Probe
 from abut.probing.cells import NEAR, Boxes, boxes, locate
 from abut.probing.closest_points import feet
 from abut.probing.sides import CONTACTOR, TARGET, Side, choose
@@ -114,7 +114,8 @@ def _quantities(model: Model, probe: Probe, side: Side | None) -> tuple[str, ...
     absent = [name for name in YIELDED if name.replace("-", "_") not in known]
     if probe.of is None:
         there = () if side is None else ON_CONTACTS if side.role == CONTACTOR else ON_CONTACTS[:1]
-        return tuple(name for name in QUANTITIES if name in (*IN_BODIES, *there) and name not in absent)
+        left = (*absent, *NAMED_ONLY)
+        return tuple(name for name in QUANTITIES if name in (*IN_BODIES, *there) and name not in left)
     for name in probe.of:
         if name in absent:
             raise InputError(f"probe '{probe.name}': no body of the model may yield; take {name} out of its 'of'")

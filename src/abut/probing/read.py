@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.materials.invariants import von_mises
-from abut.model.probe import YIELDED
+from abut.materials.invariants import principal, von_mises
+from abut.model.probe import PRINCIPAL, REACTION, YIELDED
 from abut.probing.place import OnSurface, Place
 from abut.probing.sides import CONTACTOR
 from abut.solution import ContactResult, ProbeResult, Step
@@ -24,6 +24,10 @@ def read(place: Place, step: Step) -> ProbeResult:
             "stress": stress,
             "von-mises": von_mises(stress),
         }
+        if PRINCIPAL in place.of:
+            every[PRINCIPAL] = principal(stress)
+        if REACTION in place.of and step.nodal_reaction is not None:
+            every[REACTION] = np.asarray(place.weights @ step.nodal_reaction)
         for name in YIELDED:
             if name in place.of:
                 at_points = step.remembered[name.replace("-", "_")]

@@ -23,6 +23,7 @@ from abut.problem.finite_pairs import finite_pairs
 from abut.problem.follower_loads import FollowerLoads
 from abut.problem.free_modes import free_mode_springs
 from abut.problem.held_motions import HeldMotions, neutral_in
+from abut.problem.holds import Holds
 from abut.problem.kinematics import Kinematics
 from abut.problem.loads import Loads, followers, loads
 from abut.problem.other_fields import other_fields
@@ -70,9 +71,9 @@ def assemble(
     _describe(every, note)
     clock.mark("interface")
     observe(Phase("checking for unconstrained rigid-body motions"))
-    restrained = restraint(model.mesh, constraints, every)
-    if sprung is not None:
-        restrained = restrained.helped_by(sprung.resistance(restrained.rigid.modes))
+    restrained, passing = restraint(model.mesh, constraints, every), Holds.of(model)
+    for helps in (sprung, passing):
+        restrained = restrained if helps is None else restrained.helped_by(helps.resistance(restrained.rigid.modes))
     neutral, settled = neutral_in(model, restrained, loaded.at_ends(model))
     springs = free_mode_springs(
         restrained.rigid, restrained.everything, constraints, reduced, loaded.at_ends(model), neutral, settled
@@ -88,7 +89,7 @@ def assemble(
     _check_finite(reduced.diagonal(), loaded.forces)
     n_free = reduced.shape[0]
     bodies = _bodies(model, loaded, backend)
-    beside = [*_beside(model, constraints, loaded), *(term for term in (sprung, held) if term)]
+    beside = [*_beside(model, constraints, loaded), *(term for term in (sprung, held, passing) if term)]
     own = _own(model, [term.name for term in (bodies, *beside)])
     beside += own
     affine = not (model.finite or model.physics) and _is_constant(model, [bodies, *beside])

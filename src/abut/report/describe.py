@@ -21,6 +21,7 @@ _GROUPS = (
     ("Couplings", "couplings"),
     ("Preloads", "preloads"),
     ("Springs", "springs"),
+    ("Supports that come or go", "holds"),
     ("Equations", "equations"),
     ("Contacts", "contacts"),
 )

@@ -13,17 +13,19 @@ from abut.report.describe import Table
 from abut.solution import ProbeResult, Solution
 
 UNITS = {"displacement": "length", "stress": "force/length²", "pressure": "force/length²", "gap": "length"}
+UNITS["reaction"] = "force"
 UNITS |= dict.fromkeys(("plastic_strain", "equivalent_plastic_strain", "equivalent plastic strain"), "1")
 CHARTS = (  # quantities of one chart: its title, its quantities
     ("displacement", ("displacement",)),
-    ("stress", ("stress", "von_mises")),
+    ("stress", ("stress", "von_mises", "principal_stress")),
+    ("reaction", ("reaction",)),
     ("plastic strain", ("plastic_strain", "equivalent_plastic_strain")),
     ("pressure", ("pressure", "gap")),
 )
 PLANE = ("stress_yz", "stress_zx", "plastic_strain_yz", "plastic_strain_zx")  # zero in two dimensions
 OVER_TIME = "time (share of the load, where no amplitude says otherwise)"
 NO_GAP = 1e-9  # of a gap, over the length of the line
-PEAK = "value farthest from zero"
+PEAK = "value farthest from zero"  # of reactions: the sum
 
 
 def probe_table(solution: Solution) -> Table | None:
@@ -35,6 +37,7 @@ def probe_table(solution: Solution) -> Table | None:
     rows = []
     for probe, result in zip(solution.model.probes, solution.probes):
         several = f" ({len(result.points)}); {PEAK}" if len(result.points) > 1 and probe.line is None else ""
+        several = several.replace(PEAK, f"{PEAK}, of reactions the sum") if "reaction" in result.values else several
         several = several or (f"; {PEAK}" if len(result.points) > 1 else "")
         rows.append([probe.name, probe.place + several, *(_cell(result, name) for name in given)])
     head = ["probe", "where", *(f"{_words(name)} [{_unit(name)}]" for name in given)]
@@ -66,7 +69,8 @@ def charts(solution: Solution) -> list[Chart]:
             }
             if series:
                 shown = title if any(column.startswith(title) for column in table) else _words(names[-1])
-                heading = f"{probe.name}: {shown} [{_unit(shown)}]{when}"
+                of_several = ", sum over the nodes" if shown == "reaction" and when else when
+                heading = f"{probe.name}: {shown} [{_unit(shown)}]{of_several}"
                 result.append(Chart(heading, label, x, series))
     return result
 

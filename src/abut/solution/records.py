@@ -55,8 +55,9 @@ class ProbeResult:
 
     points: (n, dim) coordinates in the undeformed mesh, length; distance: (n,) along the line from its start, length, and
     nodes: (n,) numbers of the mesh's points, each None where the probe is no line or no set.
-    values: by name displacement (n, dim), stress (n, 6) xx yy zz xy yz zx, von_mises (n,), plastic_strain (n, 6),
-    equivalent_plastic_strain, pressure, gap (n,), as far as asked for; NaN where a quantity does not exist at a point.
+    values: by name displacement and reaction (n, dim), stress (n, 6) xx yy zz xy yz zx, von_mises (n,), principal_stress
+    (n, 3), plastic_strain (n, 6), equivalent_plastic_strain, pressure, gap (n,), as far as asked for; NaN where a quantity
+    does not exist at a point.
     """
 
     name: str
@@ -106,9 +107,7 @@ class Step:
     neutral: float = 0.0  # share of the forces that facets put on those that contact resists by its facets alone
     internal: float = 0.0  # sum of the sizes of the nodal forces of stresses
     pressed: float = 0.0  # largest force between two surfaces by area: pressures that cancel around a fit add up
-    strain: float = (
-        0.0  # largest contact pressure over the stiffness of the two bodies, about that over Young's modulus
-    )
+    strain: float = 0.0  # largest contact pressure over the stiffness of the two bodies
     rounding: float = 0.0  # force that displacements in double precision cannot tell from none, over the whole model
     strained: bool = True  # whether anything gives way, beyond rounding
     rigid: Mapping[str, RigidResult] = field(default_factory=dict)
@@ -125,6 +124,7 @@ class Step:
     flow: Flow | None = None  # None where no material yields
     preloads: Mapping[str, PreloadResult] = field(default_factory=dict)
     springs: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)  # force (dim,) on what each is on
+    nodal_reaction: NDArray[np.float64] | None = None  # (n_points, dim) of supports and links
 
     def __repr__(self) -> str:
         """The main numbers, in some lines."""

@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree
 
 from abut.io.deck.faces import connectivity
 from abut.io.deck.groups import Groups
+from abut.io.deck.passing_supports import Stay, check_passing, passing
 from abut.io.deck.reasons import DeckError, Place
 from abut.io.deck.record import CyclicSymmetry, Deck, Numbers, Transform
 from abut.io.deck.thin_nodes import means, spread, straight, turns
@@ -40,6 +41,7 @@ class Bonds:
     supports: Mapping[Point, Course]
     bonds: tuple[Bond, ...]
     forces: Mapping[Point, Course]
+    passing: Mapping[Point, tuple[Stay, ...]]
 
 
 def bonds(deck: Deck, groups: Groups, plane: str | None) -> Bonds:
@@ -48,7 +50,10 @@ def bonds(deck: Deck, groups: Groups, plane: str | None) -> Bonds:
     apart = deck.references
     _check_equations(deck)
     axes = 2 if plane else 3
-    given = {(int(n), int(d) - 1): c for (n, d), c in courses(deck, "boundary").items() if n not in apart}
+    stays = passing(deck)
+    check_passing(deck, stays, {int(n) for t in deck.transforms for n in t.nodes}, used)
+    lasting = {key: course for key, course in courses(deck, "boundary").items() if key not in stays}
+    given = {(int(n), int(d) - 1): c for (n, d), c in lasting.items() if n not in apart}
     pushed = {(int(n), int(d) - 1): c for (n, d), c in courses(deck, "force").items() if n not in apart}
     named = {n for n, _ in (*given, *pushed)} | {n for e in deck.equations for n, _, _ in e.terms}
     local = _local_axes(deck, named)
@@ -84,7 +89,9 @@ def bonds(deck: Deck, groups: Groups, plane: str | None) -> Bonds:
     if plane == "axisymmetric":
         known |= dict.fromkeys(((n, 0) for n in _on_axis(deck, groups)), NOTHING)
     kept = [_reduced(bond, known, axes) for bond in (*oblique, *equations)]
-    return Bonds(supports, tuple(b for b in kept if b is not None), {p: c for p, c in forces.items() if p[1] < axes})
+    coming = {(int(n), int(d) - 1): each for (n, d), each in stays.items() if d <= axes}
+    pushes = {p: c for p, c in forces.items() if p[1] < axes}
+    return Bonds(supports, tuple(b for b in kept if b is not None), pushes, coming)
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,7 @@ from abut.io.deck.model_cards import (
     sections,
     transforms,
 )
+from abut.io.deck.output_cards import requests
 from abut.io.deck.reasons import DeckError, Reasons
 from abut.io.deck.record import Amplitude, Deck, Prescribed
 from abut.io.deck.repeated import repeated_members, without_repeated
@@ -81,6 +82,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
         springs=springs(cards, mesh.numbers, reasons),
         thicknesses=nodal_thickness(cards, mesh, reasons),
         normals=normals(cards, mesh, reasons),
+        requests=requests(sifted.requests),
     )
     reasons.tell()
     return deck

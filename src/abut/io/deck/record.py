@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.io.deck.elements import ElementType
+from abut.io.deck.output_cards import Request
 from abut.io.deck.reasons import Place
 
 Numbers = NDArray[np.int64]
@@ -352,6 +353,7 @@ class Deck:
     thicknesses: Mapping[int, float] = field(default_factory=dict)
     normals: Mapping[tuple[int, int], tuple[float, float, float]] = field(default_factory=dict)
     thin: Mapping[int, Thin] = field(default_factory=dict)
+    requests: tuple[Request, ...] = ()
 
     @property
     def references(self) -> frozenset[int]:

@@ -9,6 +9,7 @@ from abut.errors import InputError, nearest
 from abut.io.deck import spring_cards
 from abut.io.deck.cards import Card, key
 from abut.io.deck.elements import ELEMENTS, refusal
+from abut.io.deck.output_cards import REQUESTS
 from abut.io.deck.reasons import DeckError, Reasons
 
 # Cards that are read, with the parameters that are read or change nothing in statics.
@@ -203,12 +204,14 @@ def opens(card: str, parameters: Mapping[str, str | None]) -> bool:
 @dataclass(frozen=True)
 class Sifted:
     """cards: those to read; quiet: titles of those without effect; ignored: what was left out because the user said so;
-    plain: whether numbers of nodes and elements mean the same everywhere, and none are generated."""
+    plain: whether numbers of nodes and elements mean the same everywhere, and none are generated; requests: what is to be
+    printed and written, with the number of its step, 0 outside."""
 
     cards: tuple[Card, ...]
     quiet: tuple[str, ...]
     ignored: tuple[str, ...]
     plain: bool
+    requests: tuple[tuple[int, Card], ...] = ()
 
 
 def sift(cards: Iterable[Card], reasons: Reasons, ignore: Collection[str] = ()) -> Sifted:
@@ -226,8 +229,11 @@ def sift(cards: Iterable[Card], reasons: Reasons, ignore: Collection[str] = ()) 
     quiet: dict[str, None] = {}
     ignored: dict[str, list[str]] = {}
     found: dict[str, DeckError] = {}
+    wanted: list[tuple[int, Card]] = []
+    number = 0
     changing = ""  # what belongs to a *CHANGE ... card: *CHANGE SURFACE BEHAVIOR is followed by *SURFACE BEHAVIOR
     for card in left:
+        number += isinstance(card, Card) and card.key == "STEP"
         if isinstance(card, Card) and card.key.startswith("CHANGE"):
             changing = card.key.removeprefix("CHANGE")
         if isinstance(card, Card) and card.key == changing and f"CHANGE{changing}" in asked:
@@ -239,6 +245,8 @@ def sift(cards: Iterable[Card], reasons: Reasons, ignore: Collection[str] = ()) 
             found.setdefault("RESTART READ", card.error(RESTART))
         elif card.key in _QUIET:
             quiet[card.title] = None
+            if card.key in REQUESTS:
+                wanted.append((number, card))
         elif card.key in _READ and not (card.key in LEFT_OUT and card.key in asked):
             _parameters(card, asked, ignored, found)
             code = key(card.get("TYPE") or "")
@@ -267,7 +275,7 @@ def sift(cards: Iterable[Card], reasons: Reasons, ignore: Collection[str] = ()) 
     for what, error in found.items():
         reasons.add(error, defines=what.startswith("ELEMENT "))
     told = tuple(f"{what} ({_places(at)})" for what, at in ignored.items())
-    return Sifted(tuple(kept), tuple(quiet), told, not GENERATED & found.keys())
+    return Sifted(tuple(kept), tuple(quiet), told, not GENERATED & found.keys(), tuple(wanted))
 
 
 def _places(places: list[str]) -> str:

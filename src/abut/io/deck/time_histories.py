@@ -50,37 +50,26 @@ def courses(deck: Deck, kind: str, base: Callable[[Key], float] = lambda _: 0.0)
 
     Values given twice in a step add up where they are loads; the later one holds for supports and temperatures. What has an
     amplitude over the total time follows it in the steps after, too, until another value takes its place or OP=NEW ends it.
-    Raises InputError for supports that begin or end between steps."""
+    Supports that begin or end between steps are for ``passing_supports``."""
     state: dict[Key, list[tuple[float, float]]] = {}
     last: dict[Key, tuple[Prescribed, float]] = {}
     start = 0.0
     for step in deck.steps:
         first = step is deck.steps[0]
-        given = (_given(deck.fixed, kind) if first else {}) | _given(step.values, kind)
+        given = (given_in(deck.fixed, kind) if first else {}) | given_in(step.values, kind)
         end = start + step.period
         ended = state.keys() - given.keys() if _group(kind) in step.new else set()
         for key in ended:
-            if kind == "boundary":
-                raise _error(last[key][0], f"OP=NEW of step {step.number} lets node {int(key[0])} go again")
             state[key] = [*state[key], (start, state[key][-1][1]), (end, base(key))]
-            del last[key]
-        going = {key: of for key, of in last.items() if key not in given and _over_total_time(deck, of[0])}
+            last.pop(key, None)
+        going = {key: of for key, of in last.items() if key not in given and over_total_time(deck, of[0])}
         for key, (value, size) in {**given, **going}.items():
             before = [p for p in state.get(key, []) if p[0] <= start] or [(start, base(key))]
-            if kind == "boundary" and key not in state and not first:
-                raise _error(value, f"node {int(key[0])} is free in the step before and held in step {step.number}")
-            state[key] = [*before, *_within(deck, value, size, before[-1][1], start, step)]
+            state[key] = [*before, *course_within(deck, value, size, before[-1][1], start, step)]
         last |= given
         start = end
     total = start or 1.0
-    return {key: _tidy([(t / total, v) for t, v in points]) for key, points in state.items()}
-
-
-def _error(value: Prescribed, what: str) -> DeckError:
-    return DeckError(
-        value.place,
-        f"*BOUNDARY: {what}; supports that come or go between steps are not supported: make a deck for each state",
-    )
+    return {key: tidy([(t / total, v) for t, v in points]) for key, points in state.items()}
 
 
 def _group(kind: str) -> str:
@@ -93,7 +82,7 @@ def _keys(value: Prescribed) -> Iterable[Key]:
     return [(number, direction) for number in value.numbers.tolist() for direction in value.directions]
 
 
-def _over_total_time(deck: Deck, value: Prescribed) -> bool:
+def over_total_time(deck: Deck, value: Prescribed) -> bool:
     return bool(value.amplitude) and deck.amplitudes[value.amplitude].total
 
 
@@ -102,7 +91,7 @@ def _shift(amplitude: Amplitude, step: Step, start: float) -> float:
     return start - step.total if amplitude.total else start
 
 
-def _given(values: Iterable[Prescribed], kind: str) -> dict[Key, tuple[Prescribed, float]]:
+def given_in(values: Iterable[Prescribed], kind: str) -> dict[Key, tuple[Prescribed, float]]:
     """The values of one step by key, with sums of loads."""
     result: dict[Key, tuple[Prescribed, float]] = {}
     for value in values:
@@ -123,7 +112,7 @@ def _given(values: Iterable[Prescribed], kind: str) -> dict[Key, tuple[Prescribe
     return result
 
 
-def _within(
+def course_within(
     deck: Deck, value: Prescribed, size: float, before: float, start: float, step: Step
 ) -> list[tuple[float, float]]:
     """Points of a course within a step, with the one at its beginning."""
@@ -149,7 +138,7 @@ def at(points: tuple[tuple[float, float], ...], time: float) -> float:
     return v0 + (v1 - v0) * (time - t0) / (t1 - t0)
 
 
-def _tidy(points: list[tuple[float, float]]) -> Course:
+def tidy(points: list[tuple[float, float]]) -> Course:
     """Without repeated times and points on the line between their neighbours."""
     result: list[tuple[float, float]] = []
     for point in points:
@@ -173,7 +162,7 @@ def combine(parts: Iterable[tuple[float, Course]]) -> Course:
     """Sum of courses with their coefficients."""
     parts = [(c, course) for c, course in parts if c != 0.0]
     grid = sorted({t for _, course in parts for t, _ in course} or {0.0})
-    return _tidy([(t, sum(c * at(course, t) for c, course in parts)) for t in grid])
+    return tidy([(t, sum(c * at(course, t) for c, course in parts)) for t in grid])
 
 
 def zero(course: Course) -> bool:
