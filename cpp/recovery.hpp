@@ -114,7 +114,8 @@ public:
 
 private:
   static constexpr int AT[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
-  static constexpr double NEAR = 0.1; // a sample at the centre counts by 100, one as far as cells reach by about 1
+  static constexpr double NEAR = 0.1;  // a sample at the centre counts by 100, one as far as cells reach by about 1
+  static constexpr double SAME = 1e-6; // distance over the size of a patch
   using Image = std::array<std::int32_t, 3>; // planes, one after the other
 
   void find_images(std::size_t k) {
@@ -288,18 +289,36 @@ private:
       }
   }
 
+  // How many images of an equation are where it is: one in a plane is one equation of the whole body.
+  int alike(std::int64_t e, const double *centre, const double *metric) const {
+    int count = 0;
+    for (const Image &image : images) {
+      double x[dim], s[C] = {0}, away = 0, size = 0;
+      std::copy(in.row_x + e * dim, in.row_x + (e + 1) * dim, x);
+      mirror(image, centre, 2, x, s);
+      for (int a = 0; a < dim; ++a) {
+        away += std::abs(x[a] - in.row_x[e * dim + a]);
+        size += metric[a * dim + a];
+      }
+      count += away < SAME * size;
+    }
+    return count;
+  }
+
   void add_rows(std::size_t k, const double *metric) {
     const double *centre = in.centre + k * dim;
-    double x[dim], xi[dim], s[C], p[T];
-    const double share = in.heavy * single[0] / (in.rows_of[k + 1] - in.rows_of[k]) / images.size();
+    double x[dim], xi[dim], s[C], p[T], all = 0;
     for (std::int64_t r = in.rows_of[k]; r < in.rows_of[k + 1]; ++r)
+      all += double(images.size()) / double(alike(in.rows[r], centre, metric));
+    for (std::int64_t r = in.rows_of[k]; r < in.rows_of[k + 1]; ++r) {
+      const std::int64_t e = in.rows[r];
+      const double part = in.heavy * single[0] / all / double(alike(e, centre, metric));
       for (const Image &image : images) {
-        const std::int64_t e = in.rows[r];
         std::copy(in.row_x + e * dim, in.row_x + (e + 1) * dim, x);
         std::copy(in.row_coefficients + e * C, in.row_coefficients + (e + 1) * C, s);
         mirror(image, centre, 2, x, s);
         own(metric, x, centre, xi);
-        const double w = share * weight(xi);
+        const double w = part * weight(xi);
         basis(xi, p);
         int used[C], count = 0; // an equation has few components
         double value = in.row_values[e];
@@ -318,6 +337,7 @@ private:
             coupled_rhs[i * C + used[c]] += own * value;
           }
       }
+    }
   }
 
   // Cholesky's factors of the lower half in place, column by column, so that the innermost loops are sums of rows. What

@@ -1,11 +1,13 @@
 """The estimated stress error near contact (the certificate's line "stress error") beside the true one, by closed forms: a
-cylinder on a block (McEwen) and a press fit (Lame). docs/verification/stresses.md.
+cylinder on a block (McEwen), a press fit (Lame), a ball on a rigid plane (Huber), axisymmetric and an octant.
+docs/verification/stresses.md.
 
-OMP_NUM_THREADS=1 python bench/stress/estimate.py
+OMP_NUM_THREADS=1 python bench/stress/estimate.py [line fit ball]
 """
 
 from __future__ import annotations
 
+import argparse
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -22,12 +24,29 @@ from abut.mesh.quadrature import error_rule
 from abut.types import Array
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests"))
-from models.stresses import FIT, HALF_WIDTH, LINE_PEAK, NU, hertz_line, press_fit
+from models.stresses import (
+    BALL_PEAK,
+    FIT,
+    HALF_WIDTH,
+    LINE_PEAK,
+    NU,
+    RADIUS,
+    hertz_ball,
+    hertz_line,
+    press_fit,
+)
 
-Field = Callable[[Array], tuple[Array, Array, Array]]  # xx, yy and xy at (..., 2)
+Field = Callable[[Array], Array]  # xx yy zz xy yz zx at (..., dim)
+FLAT, SOLID = ("tri3", "quad4", "tri6", "quad8", "quad9"), ("tet4", "hex8", "tet10", "hex20", "hex27")
 
 
-def below(x: Array) -> tuple[Array, Array, Array]:
+def strained(xx: Array, yy: Array, xy: Array) -> Array:
+    """All components in plane strain."""
+    none = np.zeros(xx.shape)
+    return np.stack([xx, yy, NU * (xx + yy), xy, none, none], axis=-1)
+
+
+def below(x: Array) -> Array:
     """Of the half space under Hertz's pressure (McEwen 1949; Johnson, Contact Mechanics, 4.2)."""
     a, along, z = HALF_WIDTH, x[..., 0], -x[..., 1]
     b = a * a - along**2 + z * z
@@ -36,24 +55,46 @@ def below(x: Array) -> tuple[Array, Array, Array]:
     n = np.sign(along) * np.sqrt(np.maximum(0.5 * (root - b), 0.0))
     size = np.maximum(m * m + n * n, 1e-12)
     share, scale = (z * z + n * n) / size, LINE_PEAK / a
-    return -scale * (m * (1 + share) - 2 * z), -scale * m * (1 - share), scale * n * (m * m - z * z) / size
+    xy = scale * n * (m * m - z * z) / size
+    return strained(-scale * (m * (1 + share) - 2 * z), -scale * m * (1 - share), xy)
 
 
 def pressed(inner: float, outer: float, outside: bool) -> Field:
     """Of a ring under a fit's pressure, from inside or from outside (Lame)."""
 
-    def field(x: Array) -> tuple[Array, Array, Array]:
+    def field(x: Array) -> Array:
         own, free = (inner, outer) if outside else (outer, inner)
         level = FIT / ((free / own) ** 2 - 1.0)
         r = np.linalg.norm(x, axis=-1)
         radial, hoop = level * (1.0 - (free / r) ** 2), level * (1.0 + (free / r) ** 2)
         c, s = x[..., 0] / r, x[..., 1] / r
-        return radial * c * c + hoop * s * s, radial * s * s + hoop * c * c, (radial - hoop) * c * s
+        return strained(radial * c * c + hoop * s * s, radial * s * s + hoop * c * c, (radial - hoop) * c * s)
 
     return field
 
 
-FIELDS = {"block": below, "hub": pressed(2.0, 3.0, True), "shaft": pressed(1.0, 2.0, False)}
+def under_ball(x: Array) -> Array:
+    """Of the half space under Hertz's ball (Huber 1904; Johnson, Contact Mechanics, 3.4), the last coordinate its depth."""
+    r, z, a = np.maximum(np.linalg.norm(x[..., :-1], axis=-1), 1e-4 * RADIUS), x[..., -1], RADIUS
+    b = r * r + z * z - a * a
+    size = np.sqrt(b * b + 4.0 * a * a * z * z)
+    u = np.where(b > 0.0, 0.5 * (b + size), 2.0 * a * a * z * z / np.maximum(size - b, 1e-300))
+    root = np.sqrt(np.maximum(u, 1e-300))
+    down, turn, side = z / root, root / a * np.arctan2(a, root), (1 - NU) * u / (a * a + u)
+    flat = (1 - 2 * NU) / 3.0 * (a / r) ** 2 * (1.0 - down**3)
+    axial = -(down**3) * a * a * u / (u * u + a * a * z * z)
+    radial = flat - axial + down * (side + (1 + NU) * turn - 2.0)
+    hoop = -flat - down * (2 * NU + side - (1 + NU) * turn)
+    shear = -r * z * z / (u * u + a * a * z * z) * a * a * root / (a * a + u)
+    none = np.zeros(r.shape)
+    if x.shape[-1] == 2:
+        return BALL_PEAK * np.stack([radial, axial, hoop, shear, none, none], axis=-1)
+    c, s = x[..., 0] / r, x[..., 1] / r
+    plane = radial * c * c + hoop * s * s, radial * s * s + hoop * c * c, axial, (radial - hoop) * c * s
+    return BALL_PEAK * np.stack([*plane, shear * s, shear * c], axis=-1)
+
+
+FIELDS = {"ball": under_ball, "block": below, "hub": pressed(2.0, 3.0, True), "shaft": pressed(1.0, 2.0, False)}
 
 
 def true_error(solution: abut.Solution, body: str, cells: Array) -> float:
@@ -68,9 +109,9 @@ def true_error(solution: abut.Solution, body: str, cells: Array) -> float:
         shapes, slopes = shape_functions(CELLS[group.kind].code, np.ascontiguousarray(rule[0]))
         nodes = solids.points[group.nodes[rows]]
         volume = np.abs(np.linalg.det(np.einsum("qnd,cne->cqed", slopes, nodes))) * rule[1]
-        exact = np.zeros((*volume.shape, 6))
-        exact[..., 0], exact[..., 1], exact[..., 3] = FIELDS[body](shapes @ nodes)
-        exact[..., 2] = NU * (exact[..., 0] + exact[..., 1])
+        if solids.mesh.axisymmetric:
+            volume *= 2.0 * np.pi * (shapes @ nodes)[..., 0]
+        exact = FIELDS[body](shapes @ nodes)
         rest = exact - carried(group.kind, group.rule, rule[0]) @ stress[rows]
         for_both = [
             float((np.einsum("cqi,ij,cqj->cq", s, compliance, s) * volume).sum() / young) for s in (rest, exact)
@@ -81,11 +122,18 @@ def true_error(solution: abut.Solution, body: str, cells: Array) -> float:
 
 def main() -> None:
     """Print a row for each body, and the medians."""
-    ratios: dict[int, list[float]] = {1: [], 2: []}
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("cases", nargs="*", default=["line", "fit", "ball"])
+    cases, ratios = parser.parse_args().cases, dict[tuple[str, int], list[float]]()
     print("| body | cells | n | estimate % | true % | ratio |\n|---|---|---|---|---|---|")
-    for model, sizes in ((hertz_line, (4, 8, 16)), (press_fit, (3, 6, 12))):
-        for kind in ("tri3", "quad4", "tri6", "quad8", "quad9"):
-            for n in sizes:
+    for case, model, sizes, kinds in (
+        ("line", hertz_line, (4, 8, 16), FLAT),
+        ("fit", press_fit, (3, 6, 12), FLAT),
+        ("ball", hertz_ball, (4, 6, 10), FLAT),
+        ("ball", hertz_ball, (4, 6, 10), SOLID),
+    ):
+        for kind in kinds if case in cases else ():
+            for n in sizes[: 2 if CELLS[kind].dim * CELLS[kind].degree == 6 else 3]:
                 solution = abut.solve(model(kind, n))
                 solids, contact = solution.model.deformable, solution.contacts[0]
                 estimates = {e.body: e.error for e in solution.steps[-1].stress_error.near}
@@ -96,13 +144,13 @@ def main() -> None:
                         true = true_error(
                             solution, body, _around(solids, side, largest > PRESSED * largest.max(), number)
                         )
-                        ratios[CELLS[kind].degree].append(estimates[body] / true)
+                        group = f"{case}, {CELLS[kind].dim}D", CELLS[kind].degree
+                        ratios.setdefault(group, []).append(estimates[body] / true)
                         row = f"{100 * estimates[body]:.2f} | {100 * true:.2f} | {estimates[body] / true:.2f}"
                         print(f"| {body} | {kind} | {n} | {row} |", flush=True)
-    for degree, values in ratios.items():
-        print(
-            f"degree {degree}: median {np.median(values):.2f}, {min(values):.2f} to {max(values):.2f}, {len(values)} rows"
-        )
+    for (case, degree), values in ratios.items():
+        spread = f"{min(values):.2f} to {max(values):.2f}, {len(values)} rows"
+        print(f"{case}, degree {degree}: median {np.median(values):.2f}, {spread}")
 
 
 if __name__ == "__main__":

@@ -119,6 +119,7 @@ class PairState:
 EDGE = 0.05  # share of the force that functions with hardly any support may carry
 LITTLE = 0.8 * WEAK_SUPPORT  # the iterations that end a step may move the edge a little
 SOFTENED, SOFTENED_NOTICED = 0.3, 0.02  # gap of a softened law over the indentation: a Hertz peak loses half of that
+IN_PLANE = 0.7  # of the way out of an edge along a plane's normal, from which on it lies in that plane
 FAINT = 1e-3  # pressure over the largest of all contacts from which down the laws of friction are rounding of those
 
 
@@ -272,8 +273,7 @@ def reported(state: PairState, at: Averages) -> Recovery:
     pair, average = state.pair, at.of(state.normal)
     plain, smooth = average, pair.tied or bool(state.closed.all() and pair.space.continuous and pair.space.ordinary)
     if smooth:
-        across = None if pair.planes is None else pair.planes.across[split_at_creases(pair.contactor)[1]]
-        sharp = at.sharpened(average, at.surface.points, across)
+        sharp = at.sharpened(average, at.surface.points, _places(pair, at.surface, True).along)
         plain, smooth = (sharp, True) if pair.two_way or sharp.min() >= 0.0 else (average, False)
     if pair.planes is not None:
         plain = evened(pair.contactor, at, plain, pair.planes, smooth)
@@ -285,15 +285,20 @@ def _places(pair: Pair, split: Surface, smooth: bool) -> Places:
     """split: the contactor, split at its creases; smooth: closed all over."""
     _, normals = side_normals(pair.contactor)
     owner, n = split_at_creases(pair.contactor)[1], len(split.points)
-    border, ends = np.zeros((2, n), dtype=bool)
-    border[rim(split).ends] = True
+    edges, (border, ends) = rim(split), np.zeros((2, n), dtype=bool)
     across = np.zeros((n, 2, split.dim))
     if pair.planes is not None:
         across = pair.planes.across[owner]
     if split.axisymmetric:
-        axis = border & (split.points[:, 0] <= ON_AXIS * split.points[split.node_ids, 0].max())
+        last = np.unique(edges.ends)
+        axis = last[split.points[last, 0] <= ON_AXIS * split.points[split.node_ids, 0].max()]
         across[axis, 0] = (1.0, 0.0)
-    border &= ~across.any(axis=(1, 2))
+    for normal in np.moveaxis(across, 1, 0):  # a surface that goes on beyond a plane is square to it
+        normals = normals - (normals * normal).sum(axis=1, keepdims=True) * normal
+    normals = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+    out = edges.out / np.linalg.norm(edges.out, axis=1, keepdims=True)
+    beyond = np.abs(np.einsum("mepa,ma->mep", across[edges.ends], out)).max(axis=2).min(axis=1) > IN_PLANE
+    border[edges.ends[~beyond]] = True
     if not smooth:
         outer = slice(None) if pair.interior is None else ~pair.interior
         nodes = split.nodes[outer]

@@ -283,7 +283,7 @@ def _equations(model: Model, skin: _Skin, pieces: _Pieces, whole: NDArray[np.int
     of, dim = model.deformable.patches, model.dim
     around = (of.skin[:, of.free] @ pieces.visits).tocsr()
     components = stress.shape[1]
-    told = pieces.known.copy()
+    told = pieces.known & ~pieces.plane[:, None]  # images make shear vanish on a plane
     told[whole] = False
     rows, axis = np.nonzero(told)
     coefficients = np.zeros((len(rows), components))

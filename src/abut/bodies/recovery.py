@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from abut._core import evaluate_patches, fit_patches, shape_functions, stress_errors
 from abut.bodies.evaluation import History
+from abut.bodies.image_cells import ImageCells, image_cells, planes_of
 from abut.bodies.solids import UNHEATED, Array, Group, Solids, TemperatureChange
 from abut.bodies.stress import PointStress, point_stress
 from abut.cells import CELLS
@@ -58,13 +59,13 @@ def recovered(solids: Solids, points: Array, stress: PointStress, known: Equatio
     of, dim = solids.patches, points.shape[1]
     if known is None:
         known = no_equations(of, dim)
-    x, values, first = _samples(solids, points, stress)
-    inner = (of.degree == 1) & ~known.bare
-    cells = _widened(of, inner | known.bare)
-    centre = np.ascontiguousarray(points[of.point[of.corner]])
     used = list(PLANE) if dim == 2 else list(range(6))
+    inner = (of.degree == 1) & ~known.bare
+    centre = np.ascontiguousarray(points[of.point[of.corner]])
+    images = image_cells(of.around, planes_of(known.planes, centre), dim)
+    cells = _widened(of, inner | known.bare, images)
     coefficients, metrics = fit_patches(
-        (x, np.ascontiguousarray(values[:, used]), first, _spread(solids, points)),
+        _with_images(_samples(solids, points, stress, used), images),
         (centre, cells.indptr.astype(np.int64), cells.indices.astype(np.int64),
          np.where(inner, 2, of.degree).astype(np.int32)),
         (known.planes, known.normals),
@@ -154,9 +155,12 @@ def _compliance(material: Material) -> Array:
     return np.ascontiguousarray(np.linalg.pinv(tangent, hermitian=True))
 
 
-def _samples(solids: Solids, points: Array, stress: PointStress) -> tuple[Array, Array, NDArray[np.int64]]:
-    """Positions (m, dim) and stresses (m, 6) at the points where they are best, cell after cell, and the first of each cell,
-    (n_cells + 1,)."""
+Samples = tuple[Array, Array, NDArray[np.int64], Array]
+
+
+def _samples(solids: Solids, points: Array, stress: PointStress, used: list[int]) -> Samples:
+    """Positions (m, dim) and stresses (m, 4 or 6) at the points where they are best, cell after cell, the first of each
+    cell, (n_cells + 1,), and ``_spread``."""
     count = np.zeros(solids.mesh.n_cells, dtype=np.int64)
     groups = solids.groups()
     rules = [superconvergent_rule(group.kind) for group in groups]
@@ -169,7 +173,7 @@ def _samples(solids: Solids, points: Array, stress: PointStress) -> tuple[Array,
         shapes, _ = shape_functions(CELLS[group.kind].code, np.ascontiguousarray(rule[0]))
         x[rows] = shapes @ points[group.nodes]
         values[rows] = carried(group.kind, group.rule, rule[0]) @ at
-    return x, values, first
+    return x, np.ascontiguousarray(values[:, used]), first, _spread(solids, points)
 
 
 def _spread(solids: Solids, points: Array) -> Array:
@@ -213,11 +217,38 @@ def _monomials(kind: str, xi: Array) -> Array:
     return np.stack(columns, axis=1)
 
 
-def _widened(of: Patches, wide: NDArray[np.bool_]) -> Sparse:
-    """The cells of each patch, of some also those around the corners of these."""
-    if wide.all():
-        return ((of.around @ of.around.T) @ of.around).tocsr()
+def _widened(of: Patches, wide: NDArray[np.bool_], images: ImageCells) -> Sparse:
+    """The cells of each patch, of some also those around the corners of these, with images beyond planes but for those by
+    planes through the patch's own corner, of which it has the images of all its cells."""
     rows = np.flatnonzero(wide)
-    more = (of.around[rows] @ of.around.T) @ of.around
+    more = (of.around[rows] @ of.around.T) @ images.around
+    more = _pattern(more - more.multiply(images.own[rows] > 0.0))
+    if wide.all():
+        return more
     place = sp.csr_matrix((np.ones(len(rows)), (rows, np.arange(len(rows)))), shape=(len(of.corner), len(rows)))
-    return (of.around + place @ more).tocsr()
+    plain = sp.hstack([of.around, sp.csr_matrix((len(of.corner), len(images.cell)))])
+    return (plain + place @ more).tocsr()
+
+
+def _pattern(matrix: Sparse) -> Sparse:
+    result = matrix.tocsr()
+    result.eliminate_zeros()
+    return result
+
+
+def _with_images(samples: Samples, images: ImageCells) -> Samples:
+    """The same with those of image cells after the cells' own."""
+    x, values, first, spread = samples
+    if not len(images.cell):
+        return samples
+    dim, count = x.shape[1], np.diff(first)[images.cell]
+    which = np.repeat(np.arange(len(count)), count)
+    rows = first[images.cell][which] + np.arange(len(which)) - np.repeat(np.cumsum(count) - count, count)
+    mean, moments = spread[images.cell, 0], spread[images.cell, 1:]
+    sign = np.where(images.turned, -1.0, 1.0)
+    every = np.arange(len(count))
+    more = np.concatenate([images.places(mean, every)[:, None], sign[:, :, None] * moments * sign[:, None]], axis=1)
+    return (
+        np.concatenate([x, images.places(x[rows], which)]), np.concatenate([values, images.tensors(values[rows], which)]),
+        np.concatenate([first, first[-1] + np.cumsum(count)]), np.concatenate([spread, more.reshape(-1, dim + 1, dim)]),
+    )  # fmt: skip

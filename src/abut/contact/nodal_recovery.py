@@ -62,28 +62,34 @@ class Averages:
         return _divided(loads, weight)[self.shared]
 
     def sharpened(
-        self, average: NDArray[np.float64], x: NDArray[np.float64], across: NDArray[np.float64] | None = None
+        self, average: NDArray[np.float64], x: NDArray[np.float64], along: NDArray[np.float64] | None = None
     ) -> NDArray[np.float64]:
         """Averages (n_points,) of a field on all of the contactor at points x (n_points, dim), without what averaging takes
-        from a linear field: theory (P12). Of the same resultant, since what one point gains another loses. across:
-        (n_points, 2, dim) unit normals of planes of symmetry at points, across which there is no slope, zero elsewhere."""
+        from a linear field: theory (P12). Of the same resultant, since what one point gains another loses. along:
+        (n_points, dim, dim) projections on the directions in which there may be a slope, all of them if None."""
         rows, mass = self._masses()
         slope, used = np.zeros_like(x), np.unique(self.corners[self.corners >= 0])
-        slope[used] = self.slopes(average, used)
-        for normal in () if across is None else across.transpose(1, 0, 2):
-            slope -= (slope * normal).sum(axis=1, keepdims=True) * normal
+        slope[used] = self.slopes(average, used, along)
         g, away = slope[rows], x[rows][:, :, None] - x[rows][:, None]
         gain = 0.5 * np.einsum("fij,fijd,fijd->fi", mass, away, g[:, :, None] + g[:, None])
         return np.asarray(average + _divided(self._sum(gain), self.weight))
 
-    def slopes(self, average: NDArray[np.float64], points: NDArray[np.int64]) -> NDArray[np.float64]:
+    def slopes(
+        self, average: NDArray[np.float64], points: NDArray[np.int64], along: NDArray[np.float64] | None = None
+    ) -> NDArray[np.float64]:
         """Slope at some points (n,), (n, dim), fitted to the averages (n_points,) there and at their neighbours, each taken
-        at the point X_i of theory (P12) where it holds."""
+        at the point X_i of theory (P12) where it holds. along: as in ``sharpened``; images of neighbours beyond planes of
+        symmetry change nothing but what is across them."""
         rows, mass = self._masses()
         at = _divided(self._sum(np.matmul(mass, self.surface.points[rows])), self.weight)
+        if along is not None:
+            x = self.surface.points
+            at = x + np.einsum("nab,nb->na", along, at - x)
         used = (mass != 0.0).astype(float)
         apart, rise = at[rows][:, None] - at[rows][:, :, None], average[rows][:, None] - average[rows][:, :, None]
         close = used / np.maximum((apart**2).sum(axis=-1), 1e-300)
+        if along is not None:
+            apart = np.einsum("fiab,fijb->fija", along[rows], apart)
         metric = self._sum(np.einsum("fij,fija,fijb->fiab", close, apart, apart))[points]
         rate = self._sum(np.einsum("fij,fija,fij->fia", close, apart, rise)).reshape(len(average), -1, 1)[points]
         return np.asarray((np.linalg.pinv(metric, rcond=FLAT_STAR, hermitian=True) @ rate)[..., 0])

@@ -46,6 +46,13 @@ class Places:
     rim: Flags
     ends: Flags
 
+    @property
+    def along(self) -> Array:
+        """Projections on the directions in which there may be a slope, (n_points, dim, dim): along the surface, and not
+        across planes of symmetry."""
+        square = np.concatenate([self.normals[:, None], self.across], axis=1)
+        return np.eye(square.shape[2]) - np.einsum("nia,nib->nab", square, square)
+
 
 @dataclass(frozen=True)
 class PointValues:
@@ -132,7 +139,7 @@ def recovered(at: Averages, average: Array, plain: Array, places: Places, tied: 
     the nodes already, at points that facets without target belong to, and at ends of the contactor. tied: a tie, which may
     pull."""
     closed = at.weight > 0.0 if tied else average > CLOSED * average.max(initial=0.0)
-    stars, of = _stars(at, closed, places), supports(at.surface)
+    stars, of = _stars(at, closed, places), supports(at.surface, places.across)
     for _ in range(ROUNDS):
         values, fits = _untouched(plain), None
         if not stars.inner.any():
@@ -224,12 +231,15 @@ def _smooth(
     value, slope, points = before.value.copy(), np.zeros_like(surface.points), fits.points
     found = fits.to_averages(average)
     value[points], slope[points] = found.value, found.gradient
-    here, other = stars.models(stars.outer, across)
+    use = stars.outer[stars.one] & stars.inner[stars.other]
+    here, other = stars.one[use], stars.other[use]
     model = found.some(np.searchsorted(points, other))
     gradient = model.slope(surface.points[here], surface.points[other])
     less = (gradient * of.mean[here]).sum(axis=1) + 0.5 * (model.curvature * of.square[here]).sum(axis=(1, 2))
-    each = _mean(here, np.column_stack([less, gradient]), len(value))
+    each = _mean(here, np.column_stack([less, gradient]), len(value), _images(across, here, other))
     value[stars.outer], slope[stars.outer] = (average - each[:, 0])[stars.outer], each[stars.outer, 1:]
+    for normal in np.moveaxis(across, 1, 0):  # the mean with images
+        slope[stars.outer] -= ((slope * normal).sum(axis=1, keepdims=True) * normal)[stars.outer]
     known = stars.inner | stars.outer
     return PointValues(value, slope, 2.0 * value[:, None] * slope, known, before.edge)
 
@@ -263,9 +273,17 @@ def _at_edge(
     return PointValues(value, slope, of_square, before.known | stars.edge, some)
 
 
-def _mean(here: Ids, values: Array, n: int) -> Array:
+def _mean(here: Ids, values: Array, n: int, weight: Array | None = None) -> Array:
     """Means (n, c) of values (m, c) by point, 0 for none."""
-    return summed(here, values, n) / np.maximum(np.bincount(here, minlength=n), 1)[:, None]
+    if weight is None:
+        return summed(here, values, n) / np.maximum(np.bincount(here, minlength=n), 1)[:, None]
+    return summed(here, weight[:, None] * values, n) / np.maximum(np.bincount(here, weight, n), 1)[:, None]
+
+
+def _images(across: Array, here: Ids, other: Ids) -> Array:
+    """How often points ``other`` are neighbours of points ``here``, (m,): with images beyond planes through these alone."""
+    both = np.abs((across[here][:, :, None] * across[other][:, None]).sum(axis=-1)).max(axis=2) > 0.5
+    return np.asarray(np.prod(np.where(across[here].any(axis=2) & ~both, 2.0, 1.0), axis=1))
 
 
 def _root_averages(

@@ -54,8 +54,9 @@ class Supports:
     square: Array
 
 
-def supports(surface: Surface) -> Supports:
-    """Of a surface's corner points, zero at others."""
+def supports(surface: Surface, across: Array | None = None) -> Supports:
+    """Of a surface's corner points, zero at others. across: (n_points, 2, dim) unit normals of planes of symmetry through
+    points, zero where there are none: their functions go on beyond these."""
     n, dim = surface.points.shape
     weight, mean, square = np.zeros(n), np.zeros((n, dim)), np.zeros((n, dim, dim))
     for kind, facets in by_kind(surface):
@@ -68,7 +69,13 @@ def supports(surface: Surface) -> Supports:
             mean += summed(i, lever.sum(axis=1), n)
             square += summed(i, np.matmul(lever.transpose(0, 2, 1), away), n)
     weight = np.where(weight > 0.0, weight, 1.0)
-    return Supports(mean / weight[:, None], square / weight[:, None, None])
+    mean, square = mean / weight[:, None], square / weight[:, None, None]
+    for normal in () if across is None else np.moveaxis(across, 1, 0):
+        at = np.flatnonzero(normal.any(axis=1))
+        mirror = np.eye(dim) - 2.0 * normal[at][:, :, None] * normal[at][:, None]
+        mean[at] = 0.5 * (mean[at] + (mirror @ mean[at][..., None])[..., 0])
+        square[at] = 0.5 * (square[at] + mirror @ square[at] @ mirror)
+    return Supports(mean, square)
 
 
 def summed(here: Ids, values: Array, n: int) -> Array:

@@ -22,12 +22,13 @@ from abut.contact.rim import Rim, ends_on_target, goes_on, rim, rim_of_sides
 from abut.contact.self_contact import lies_deep, with_kin
 from abut.contact.shared_points import Functions, functions, one_each
 from abut.contact.sides import Sides
-from abut.contact.symmetry_planes import Planes, planes
+from abut.contact.symmetry_planes import STRAIGHT, Planes, planes
 from abut.contact.tangential import SlipOperators, slip_operators
 from abut.mesh.surface import Surface
 from abut.model import METHODS, Contact, Model
 from abut.model.friction import friction_values
 from abut.model.offset import offsets
+from abut.model.symmetry import held_directions
 from abut.problem.constraints import Constraints
 from abut.problem.contact_normals import contact_normals
 from abut.problem.coupled_surfaces import coupled
@@ -186,7 +187,22 @@ def planes_of(
     mirrored[at] = mirrors(model.deformable, cells, mesh.points[border.ends[at, 0]], out[at])
     corners = np.concatenate([np.full(len(block.nodes), CELLS[block.kind].corners) for block in mesh.blocks])
     uneven = corners[contactor.cells] == 3 if contactor.dim == 2 else np.isin(contactor.kinds, TRIANGLES)
-    return planes(contactor, border, mirrored, uneven)
+    return planes(contactor, _square_to_planes(model, border), mirrored, uneven)
+
+
+def _square_to_planes(model: Model, border: Rim) -> Rim:
+    """The rim with directions out of it in which supports hold its ends, where one is near: facets of a round surface lean
+    out of a plane by a part of their turn."""
+    found = held_directions(model.mesh, model.supports)
+    if found is None:
+        return border
+    out = border.out / np.linalg.norm(border.out, axis=1, keepdims=True)
+    number, direction = found.at(border.ends[:, 0])
+    along = (out[number] * direction).sum(axis=1)
+    order = np.argsort(np.abs(along), kind="stable")  # the nearest is written last
+    order = order[np.abs(along[order]) > STRAIGHT]
+    out[number[order]] = (np.sign(along)[:, None] * direction)[order]
+    return replace(border, out=out)
 
 
 def with_plain_functions(model: Model, earlier: Pair, constraints: Constraints, active: NDArray[np.bool_]) -> Pair:
