@@ -27,7 +27,9 @@ from abut.io.deck import read_deck
 from abut.io.deck.time_histories import ends
 from reference import EXAMPLES, PROCEDURES, TYPES, NoReference, Reference, decks, difference, reference
 
-MATERIALS = ("PLASTIC", "HYPERELASTIC")
+MATERIALS = (
+    "PLASTIC", "HYPERELASTIC", "HYPERFOAM", "CREEP", "DEFORMATION PLASTICITY", "USER MATERIAL", "VISCO",
+)  # fmt: skip
 AGREES = 0.01  # largest difference of displacement over the largest displacement
 # What abut may be told to ignore here, because the reference run leaves it out too.
 IGNORABLE = (

@@ -75,7 +75,7 @@ def test_tangent(kind: str, axisymmetric: bool, law: object) -> None:
     change = (respond(body, u + step * v).force - respond(body, u - step * v).force) / (2 * step)
     np.testing.assert_allclose(slope @ v.ravel(), change, rtol=0, atol=1e-6 * abs(change).max())
     assert abs(slope - slope.T).max() < 1e-11 * abs(slope).max()
-    assert is_symmetric(body) == (not isinstance(law, Hencky | Plastic))
+    assert is_symmetric(body)
 
 
 @pytest.mark.parametrize("kind", PRESSURES)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.analysis.deadline import Deadline
+from abut.analysis.limit_load import limit_load, yields
 from abut.analysis.linear_solvers import assembled_bodies, linear_solver, setting_up, solver_kind
 from abut.analysis.parts import whole
 from abut.analysis.results import Acted, step_result
@@ -197,14 +198,14 @@ class Run:
         return pace
 
     def _begun(self) -> Pace:
-        """Before the first step. Large sliding finds its own steps; with friction or large displacements those of the user
-        are taken in parts where they fail, and where there are none the onset of slip has steps of its own."""
+        """Before the first step. Large sliding finds its own steps; with friction, flow or large displacements those of the
+        user are taken in parts where they fail, and where there are none the onset of slip has steps of its own."""
         model, pairs, solve = self.model, self.assembled.problem.pairs, self.model.solve
         rubs = any(pair.frictional for pair in pairs)
         slips = Slips(self._fits()) if rubs and solve.finds_steps else None
         if model.finite and pairs:
             return pace_of(solve.steps, solve.times, (*model.histories, *model.locking), slips, self.settings)
-        return given_pace(model.ends, model.finite or rubs, slips, self.settings)
+        return given_pace(model.ends, model.finite or rubs or yields(model), slips, self.settings)
 
     def _fits(self) -> bool:
         """Whether surfaces with friction press from the outset, and loads act besides."""
@@ -221,10 +222,11 @@ class Run:
             self.model, tuple(self.steps), n_free, self.solver.name, tuple(self.told.notes), timings, complete
         )
 
-    def _result(self, attempt: Attempt) -> Step:
+    def _result(self, attempt: Attempt, sized: bool = True) -> Step:
         before = [*self.steps, *(step for _, step in self.parts)]
         step, self.acted = step_result(self.assembled, attempt, before, self.acted)
-        _check_size(self.model, step.displacement, self.told.note)
+        if sized:
+            _check_size(self.model, step.displacement, self.told.note)
         return replace(step, probes=tuple(read(place, step) for place in self.places))
 
     def _end(self, attempt: Attempt) -> None:
@@ -241,12 +243,15 @@ class Run:
         if not attempt.iterations:  # there is no state to show
             raise ConvergenceError(f"step {attempt.number} cannot be begun, however short: {attempt.reason}")
         try:
-            self.steps.append(self._result(attempt))
+            limit = limit_load(self.assembled, self.steps, attempt)
+            self.steps.append(self._result(attempt, sized=not limit))
         except Unsound as reason:
             raise ConvergenceError(f"step {attempt.number} did not converge; in its last state {reason}") from None
         self.clock.mark("results")
         count = len(attempt.iterations)
         self.told.note(f"step {attempt.number} did not converge in {count} iterations{_why(attempt)}")
+        if limit:
+            self.told.note(limit)
 
     def _taken(self) -> Step:
         """The step that the parts so far make; there are none left then."""

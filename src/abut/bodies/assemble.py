@@ -13,7 +13,7 @@ from abut.bodies.evaluation import History
 from abut.bodies.integrate import integrate
 from abut.bodies.solids import UNHEATED, Array, Solids, TemperatureChange
 from abut.materials.kernel import Wanted
-from abut.materials.material import linear
+from abut.materials.material import linear, symmetric
 from abut.types import Operator, Sparse
 
 
@@ -84,9 +84,10 @@ def respond(
 
 
 def is_symmetric(solids: Solids) -> bool:
-    """Whether the tangent under finite strains is symmetric: F-bar's is not, that of a law with a history need not be."""
+    """Whether the tangent under finite strains is symmetric: F-bar's is not; bodies that are integrated together have
+    energies, others' laws say it."""
     alike = "b-bar" not in {solids.integration.get(body, "full") for body in solids.materials}
-    return alike and all(not group.body for group in solids.groups())
+    return alike and all(not group.body or symmetric(solids.materials[group.body]) for group in solids.groups())
 
 
 def thermal_load(solids: Solids, temperature: TemperatureChange) -> Array:

@@ -31,6 +31,7 @@ class LocalElastic(OwnMaterial):
     density: float = 0.0
 
     constant = True
+    symmetric = True
 
     def __post_init__(self) -> None:
         if self.axes is not None and not isinstance(self.axes, Axes) and not callable(self.axes):

@@ -69,6 +69,11 @@ class Hencky:
         return False
 
     @property
+    def symmetric(self) -> bool:
+        """True, as in ``OwnMaterial``."""
+        return True
+
+    @property
     def modulus(self) -> float:
         """Young's modulus."""
         return self.young

@@ -62,7 +62,8 @@ class OwnMaterial:
     ``evaluate_finite`` of a material for finite strains.
 
     small: it is a law for small strains, too. volume_preserving: it flows or deforms nearly without change of volume, so
-    that "auto" integrates cells that would lock otherwise. linear: the linear elastic material that it is at rest, where it
+    that "auto" integrates cells that would lock otherwise. symmetric: its tangent always is, so that solvers for symmetric
+    matrices will do. linear: the linear elastic material that it is at rest, where it
     is isotropic; errors and scales use it. fields: columns of the history to write, by name: ``{"damage": slice(6, 7)}``.
     """
 
@@ -71,6 +72,7 @@ class OwnMaterial:
     constant = False
     small = True
     volume_preserving = False
+    symmetric = False
     linear: LinearElastic | None = None
     fields: Mapping[str, slice] = {}
 
@@ -123,6 +125,11 @@ def linear(material: Material) -> LinearElastic | None:
 def volume_preserving(material: Material) -> bool:
     """As ``OwnMaterial.volume_preserving``."""
     return bool(getattr(material, "volume_preserving", False))
+
+
+def symmetric(material: Material) -> bool:
+    """As ``OwnMaterial.symmetric``."""
+    return bool(getattr(material, "symmetric", False))
 
 
 def history_fields(material: Material) -> Mapping[str, slice]:

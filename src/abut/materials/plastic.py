@@ -120,6 +120,11 @@ class Plastic:
         return True
 
     @property
+    def symmetric(self) -> bool:
+        """As in ``OwnMaterial``: but for back stresses that fade."""
+        return all(recall == 0.0 for _, recall in self.backstresses)
+
+    @property
     def fields(self) -> MappingProxyType[str, slice]:
         """As in ``OwnMaterial``: plastic strain (n, 6), equivalent plastic strain and plastic work per volume (n, 1)."""
         return FIELDS

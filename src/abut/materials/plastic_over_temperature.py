@@ -35,7 +35,7 @@ class HeatedPlastic(OwnMaterial):
         return self._told(elastic, history, False)
 
     def evaluate_finite(self, strain: Array, history: Array) -> Evaluated:
-        """As in ``FiniteMaterial``: heat stretches first, alike in all directions, theory (D6)."""
+        """As in ``FiniteMaterial``: heat stretches first, alike in all directions, theory (A3)."""
         stretch = 1.0 + self.swelling
         elastic = np.array(strain, dtype=float)
         elastic[:, :3] -= 0.5 * (stretch**2 - 1.0)[:, None]

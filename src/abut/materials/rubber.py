@@ -83,6 +83,11 @@ class Rubber:
         return False
 
     @property
+    def symmetric(self) -> bool:
+        """True, as in ``OwnMaterial``: stresses come of an energy."""
+        return True
+
+    @property
     def small(self) -> bool:
         """False, as in ``OwnMaterial``."""
         return False

@@ -112,6 +112,11 @@ class OverTemperature(OwnMaterial):
         return self._flowing is not None
 
     @property
+    def symmetric(self) -> bool:  # type: ignore[override]
+        """As in ``OwnMaterial``: of metal as of each of its materials."""
+        return all(material.symmetric for material in self.materials if isinstance(material, Plastic))
+
+    @property
     def fields(self) -> Mapping[str, slice]:  # type: ignore[override]
         """As in ``OwnMaterial``."""
         return FIELDS if self._flowing is not None else {}

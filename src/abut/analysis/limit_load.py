@@ -1,0 +1,54 @@
+"""Loads that no equilibrium carries: what to say of a step that fails, however short, while metal flows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from abut.analysis.flow import flow
+from abut.materials.material import history_fields
+from abut.materials.plastic import EQUIVALENT
+from abut.model import Model
+from abut.model.conditions import weights
+from abut.nonlinear.load_step import Attempt
+from abut.problem.assembly import Assembled
+from abut.solution import Step
+from abut.solution.flow import Flow
+
+SUM = 1e-9  # of forces over the sum of their sizes that is none
+
+
+def yields(model: Model) -> bool:
+    """Whether metal of a model may flow."""
+    return any(EQUIVALENT in history_fields(solid.material) for solid in model.solids)
+
+
+def limit_load(assembled: Assembled, steps: Sequence[Step], failed: Attempt) -> str:
+    """What to say of an attempt that failed, the shortest one, after converged steps, theory (Y13): where metal flows more
+    in it than in all of these. Nothing where it does not, or where nothing is loaded.
+
+    Raises Inverted for a state in which cells are inside out."""
+    model, time = assembled.problem.model, steps[-1].factor if steps else 0.0
+    forces = np.asarray(assembled.loaded.forces @ weights(model.histories, time)).reshape(model.mesh.points.shape)
+    if not yields(model) or not model.loads:
+        return ""
+    before, now = steps[-1].flow if steps else None, _flow(assembled, failed)
+    if now is None or not now.largest > 2.0 * (0.0 if before is None else before.largest):
+        return ""
+    at, sums = (", ".join(f"{value:.5g}" for value in x) for x in (now.place, forces.sum(axis=0)))
+    of_all = f" (sum of nodal forces ({sums}))" if np.abs(forces.sum(axis=0)).max() > SUM * np.abs(forces).sum() else ""
+    return (
+        f"limit load near time {time:.5g}{of_all}: metal flows, most in '{now.body}' at ({at}), and no load step from there "
+        f"to {failed.time:.5g} or beyond finds an equilibrium; to go on prescribe displacements in place of loads, or give "
+        "the hardening that the metal has"
+    )
+
+
+def _flow(assembled: Assembled, attempt: Attempt) -> Flow | None:
+    """In the last state of an attempt that failed, whose own history is still the one before."""
+    problem, bodies, state = assembled.problem, assembled.bodies, attempt.state
+    motion = problem.motion(state.time, problem.values(state))
+    motion = replace(motion, history=state.history.of(bodies.name), displacement=problem.displacement(state))
+    return flow(problem.model.deformable, bodies.evaluate(motion, motion).history)

@@ -1,0 +1,73 @@
+"""Loads beyond what metal carries: the run ends near the limit load that theory gives, and says so."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+import abut
+from abut.mesh.make import box, join, ring
+
+YIELD, STEPS = 300.0, 10
+SHORTEST = 1.0 / STEPS / 32  # of the time: parts of a step are halved down to a sixty-fourth, and taken up from there
+
+
+def bar(load: float, kinematics: str = "small", **given: float) -> abut.Model:
+    """Of an area of 1, pulled."""
+    mesh = join({"bar": box((0, 2), (0, 1), (0, 1), (2, 1, 1), "hex8")})
+    held = [abut.Support("bar.left", x=0), abut.Support("bar.front", y=0), abut.Support("bar.bottom", z=0)]
+    metal = abut.Plastic(210e3, 0.3, YIELD, **given)
+    pulled = abut.Traction("bar.right", [load, 0, 0])
+    options = abut.SolveOptions(steps=STEPS, max_iterations=15)
+    return abut.Model(mesh, [abut.Solid("bar", metal)], held, [pulled], kinematics=kinematics, solve=options)
+
+
+def told(solution: abut.Solution) -> float:
+    """The time that the note on the limit load names; the last step converged there."""
+    found = [re.search(r"limit load near time ([\d.]+)", note) for note in solution.notes]
+    (time,) = [float(match[1]) for match in found if match]
+    assert not solution.converged
+    assert time == pytest.approx(solution.steps[-2].factor, rel=1e-4)
+    return time
+
+
+@pytest.mark.parametrize("kinematics", ["small", "finite"])
+def test_bar(kinematics: str) -> None:
+    """The yield stress on the area; under finite strains on the one that elasticity leaves, (1 - nu Y / E)^2."""
+    solution = abut.solve(bar(1.2 * YIELD, kinematics))
+    area = (1.0 - 0.3 * YIELD / 210e3) ** 2 if kinematics == "finite" else 1.0
+    time = told(solution)
+    assert time <= area / 1.2 * (1.0 + 1e-6)
+    assert area / 1.2 < time + SHORTEST
+
+
+def test_thick_cylinder() -> None:
+    """2 / sqrt 3 Y ln(b / a) within, plane strain, whose meshes of cells that do not lock come close from above."""
+    mesh = join({"wall": ring((100, 200), (0, 90), cells=(6, 4), cell="quad8")})
+    held = [abut.Support("wall.start", y=0), abut.Support("wall.end", x=0)]
+    most = 2.0 / np.sqrt(3.0) * YIELD * np.log(2.0)
+    solid = abut.Solid("wall", abut.Plastic(210e3, 0.3, YIELD))
+    load = abut.Pressure("wall.inner", 1.1 * most)
+    solution = abut.solve(
+        abut.Model(mesh, [solid], held, [load], plane="strain", solve=abut.SolveOptions(steps=STEPS, max_iterations=15))
+    )
+    assert 1.1 * told(solution) == pytest.approx(1.0, abs=1.1 * SHORTEST + 0.003)
+
+
+def test_metal_that_hardens() -> None:
+    """It goes on: stress over hardening, and nothing is said."""
+    solution = abut.solve(bar(1.2 * YIELD, hardening=1000.0))
+    assert solution.converged
+    assert not any("limit load" in note for note in solution.notes)
+    moved = np.abs(solution.displacement[:, 0]).max() / 2.0
+    assert moved == pytest.approx(1.2 * YIELD / 210e3 + 0.2 * YIELD / 1000.0, rel=1e-8)
+
+
+def test_prescribed_displacements_go_on() -> None:
+    model = bar(0.0)
+    held = [*model.supports, abut.Support("bar.right", x=0.02)]
+    solution = abut.solve(abut.Model(model.mesh, model.solids, held, solve=model.solve))
+    assert solution.converged
+    assert solution.steps[-1].stress[:, 0] == pytest.approx(YIELD, rel=1e-9)
