@@ -356,8 +356,9 @@ MEANINGS: dict[str, dict[str, str]] = {
         "steps": "load steps, equal parts of a linear ramp; auto: one, with friction as many as the onset of slip takes. "
         "With friction, a step that does not converge is taken in parts, of which only the end is written. With contact "
         "under finite kinematics a number gives the longest step, and auto leaves all of them to abut",
-        "times": "ends of the load steps, rising to 1, where they are unequal; with contact under finite kinematics further "
-        "ones come between them where one does not converge",
+        "end": "time at the end of the run: all times of the file, those of amplitudes too, run from 0 to it",
+        "times": "ends of the load steps, rising to the end, where they are unequal; with contact under finite kinematics "
+        "further ones come between them where one does not converge",
         "linear": "linear solver; auto takes multigrid (amg) for large 3D models, and petsc on several processes",
         "max_iterations": "iterations allowed in a load step; with friction, of each method that is tried in it",
         "seconds": "time that the run may take: after it the run ends with the step or the iteration that it is in, the "

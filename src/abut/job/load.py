@@ -17,6 +17,7 @@ from abut.job.contacts import Resolved, resolve_contacts
 from abut.job.material_tables import Materials, OverTemperatureTable
 from abut.job.other_names import key_called, kind_said
 from abut.job.schema import EquationTable, JobFile, MeshTable
+from abut.job.times import with_shares
 from abut.job.values import values
 from abut.materials.anisotropic import Anisotropic, Orthotropic
 from abut.materials.elastic import LinearElastic
@@ -112,7 +113,7 @@ def load_job(path: str | Path, refine: int = 0, ignore: Collection[str] = (), so
     if data.get("schema") != 1:
         raise InputError(f"{path}: schema: expected 1, got {data.get('schema')!r}; begin the file with 'schema = 1'")
     try:
-        file = JobFile.model_validate(data)
+        file = JobFile.model_validate(with_shares(data, _end(data)))
     except ValidationError as error:
         problems = "\n  ".join(_explain(dict(e), data) for e in error.errors())
         raise InputError(f"{path}:\n  {problems}") from None
@@ -123,6 +124,13 @@ def load_job(path: str | Path, refine: int = 0, ignore: Collection[str] = (), so
         raise InputError(f"{path}: {error}") from None
     notes = (*model.mesh.notes, *resolved.notes)
     return Job(model, path.parent / file.output.directory, path, text, notes, resolved.entries, output=output)
+
+
+def _end(data: Json) -> float:
+    """The time at the end, 1 where it is none, which the model tells."""
+    solve = data.get("solve")
+    end = solve.get("end", 1.0) if isinstance(solve, dict) else 1.0
+    return float(end) if isinstance(end, (int, float)) and end > 0.0 else 1.0
 
 
 def _deck(path: Path, refine: int, ignore: Collection[str], soft: bool) -> Job:

@@ -351,6 +351,7 @@ class SolveTable(Table):
     max_iterations: int = SolveOptions.max_iterations
     times: list[Number] | None = None
     seconds: Number | None = None
+    end: Number = 1.0
 
 
 class OutputTable(Table):
