@@ -68,3 +68,38 @@ def test_decks_keep_theirs(tmp_path: Path) -> None:
 def test_what_is_no_end(end: str, tmp_path: Path) -> None:
     with pytest.raises(abut.InputError, match="end"):
         job(tmp_path, (0.25, 0.5, 1.0, f", end = {end}"))
+
+
+STEPS = """[[steps]]
+name = "press"
+period = 2
+
+[[steps]]
+name = "hold"
+period = 2
+increments = 2
+
+[[steps]]
+name = "rest"
+period = 4
+"""
+
+
+def test_names_of_steps_are_times(tmp_path: Path) -> None:
+    """The same model as with numbers; load steps end with the steps, and with the increments of the second."""
+    shares = job(tmp_path, SHARES)
+    text = JOB.format('"press"', '"hold"', '"rest"', "").replace("[[0, 0]", '[["start", 0]')
+    text = "\n".join(line for line in text.splitlines() if not line.startswith("solve")) + "\n" + STEPS
+    (tmp_path / "job.toml").write_text(text, encoding="utf-8")
+    named = load_job(tmp_path / "job.toml").model
+    assert (named.loads, named.holds) == (shares.loads, shares.holds)
+    assert (named.solve.times, named.solve.end) == ((0.25, 0.375, 0.5, 1.0), 8.0)
+    (tmp_path / "job.toml").write_text(text.replace('"press"', '"pres"', 1), encoding="utf-8")
+    with pytest.raises(abut.InputError, match="no step named 'pres', whose end a time could be; did you mean 'press'"):
+        load_job(tmp_path / "job.toml")
+    (tmp_path / "job.toml").write_text(text.replace("period = 4", "period = -4"), encoding="utf-8")
+    with pytest.raises(abut.InputError, match=r"steps\[2\].period"):
+        load_job(tmp_path / "job.toml")
+    (tmp_path / "job.toml").write_text(text.replace("[[steps]]", "[solve]\nend = 3\n[[steps]]", 1), encoding="utf-8")
+    with pytest.raises(abut.InputError, match=r"solve.end: the time at the end is that of all steps together"):
+        load_job(tmp_path / "job.toml")

@@ -69,7 +69,7 @@ def write_job(path: Path, job: Job) -> list[Path]:
     Raises InputError for what a job file cannot hold (functions of position) and where a file cannot be written."""
     mesh = path.with_suffix(".vtu")
     table = job_table(job.model, mesh.name, job.output)
-    JobFile.model_validate(with_shares(table, job.model.solve.end))
+    JobFile.model_validate(with_shares(table))
     head = [f"# from {job.path.name}"]
     head += [f"# ignored: {what}" for what in job.ignored] + [f"# {note}" for note in job.notes]
     write_mesh(mesh, job.model.mesh)

@@ -34,6 +34,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "holds": "supports that come or go on the way",
         "rotations": "surfaces, node sets and bodies that turn about an axis; not with small kinematics",
         "probes": "points, lines and sets of nodes whose results are listed for every step",
+        "steps": "parts of the time, one after the other, whose names stand for times",
         "solve": "load steps, linear solver, iterations",
         "output": "where the results go, and which of them are written",
     },
@@ -363,6 +364,11 @@ MEANINGS: dict[str, dict[str, str]] = {
         "max_iterations": "iterations allowed in a load step; with friction, of each method that is tried in it",
         "seconds": "time that the run may take: after it the run ends with the step or the iteration that it is in, the "
         "steps done so far are written, and abut run --restart goes on from there; left out: no limit",
+    },
+    "StepTable": {
+        "name": "a name of your choice; where a time is asked for it stands for the end of the step, start for 0",
+        "period": "how long it takes",
+        "increments": "load steps in it, of equal length; kinematics finite finds them where none of the steps has any",
     },
     "OutputTable": {
         "directory": "folder of the results, beside the job file",

@@ -113,7 +113,9 @@ def load_job(path: str | Path, refine: int = 0, ignore: Collection[str] = (), so
     if data.get("schema") != 1:
         raise InputError(f"{path}: schema: expected 1, got {data.get('schema')!r}; begin the file with 'schema = 1'")
     try:
-        file = JobFile.model_validate(with_shares(data, _end(data)))
+        file = JobFile.model_validate(with_shares(data))
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
     except ValidationError as error:
         problems = "\n  ".join(_explain(dict(e), data) for e in error.errors())
         raise InputError(f"{path}:\n  {problems}") from None
@@ -124,13 +126,6 @@ def load_job(path: str | Path, refine: int = 0, ignore: Collection[str] = (), so
         raise InputError(f"{path}: {error}") from None
     notes = (*model.mesh.notes, *resolved.notes)
     return Job(model, path.parent / file.output.directory, path, text, notes, resolved.entries, output=output)
-
-
-def _end(data: Json) -> float:
-    """The time at the end, 1 where it is none, which the model tells."""
-    solve = data.get("solve")
-    end = solve.get("end", 1.0) if isinstance(solve, dict) else 1.0
-    return float(end) if isinstance(end, (int, float)) and end > 0.0 else 1.0
 
 
 def _deck(path: Path, refine: int, ignore: Collection[str], soft: bool) -> Job:
