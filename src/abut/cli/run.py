@@ -137,7 +137,7 @@ def _run(arguments: argparse.Namespace, team: Team | None) -> int:
             _left(
                 f"stopped after {solution.model.solve.seconds:g} s, as solve.seconds says",
                 len(solution.steps),
-                solution.steps[-1].factor,
+                solution.model.solve.said(solution.steps[-1].factor),
                 directory,
             )
         )
@@ -192,13 +192,13 @@ def solve_job(
         try:
             solution = told(solve(job.model, observe, keep, before, team=team))
         except OutOfTime as reason:
-            raise OutOfTime(_left(str(reason), stream.steps, stream.time, directory)) from None
+            raise OutOfTime(_left(str(reason), stream.steps, job.model.solve.said(stream.time), directory)) from None
         except (Stopped, ConvergenceError) as reason:  # of a step that has no state to show
             for so_far in latest:
                 stream.finish(so_far, read_origin(job.path, job.text))
             if isinstance(reason, ConvergenceError):
                 raise
-            raise Stopped(_left("stopped", stream.steps, stream.time, directory)) from None
+            raise Stopped(_left("stopped", stream.steps, job.model.solve.said(stream.time), directory)) from None
         if text := _unused(arguments.petsc):
             _say(text)
             solution = replace(solution, notes=(*solution.notes, text))
@@ -249,12 +249,12 @@ def _say(text: str) -> None:
     show(f"abut: {text}", file=sys.stderr, flush=True)
 
 
-def _left(how: str, steps: int, time: float, directory: Path) -> str:
+def _left(how: str, steps: int, time: str, directory: Path) -> str:
     """What a run that was stopped, ``how`` in words, leaves behind: so many steps, up to a time."""
     if not steps:
         return f"{how} before the first step converged: nothing is written"
     some = "step 1 is" if steps == 1 else f"steps 1 to {steps} are"
-    return f"{how}: {some} in {directory}, up to time {time:.4g} of 1; go on with abut run --restart"
+    return f"{how}: {some} in {directory}, up to time {time}; go on with abut run --restart"
 
 
 def _failure(solution: Solution, directory: Path) -> str:
@@ -267,7 +267,7 @@ def _failure(solution: Solution, directory: Path) -> str:
     where = where or f"the residual of equilibrium is {step.iterations[-1].residual:.1e} of the forces"
     tries = "".join(f"\n  {i}. {remedy}" for i, remedy in enumerate(remedies(solution), start=1))
     before = [other.factor for other in solution.steps if other.converged]
-    after = f", after time {before[-1]:.4g} of 1," if before else ""
+    after = f", after time {solution.model.solve.said(before[-1])}," if before else ""
     text = f"step {step.number}{after} did not converge: {where}. The last state is in {directory}."
     return f"{text} Try{tries}" if tries else text
 
@@ -281,7 +281,7 @@ def _print_result(solution: Solution, directory: Path) -> None:
     if not (solution.converged and solution.complete):
         last = solution.steps[-1]
         how = "" if last.converged else ", which did not converge"
-        show(f"at the end of step {last.number}, time {last.factor:.4g} of 1{how}:")
+        show(f"at the end of step {last.number}, time {solution.model.solve.said(last.factor)}{how}:")
     for contact in solution.contacts:
         show(
             f"contact '{contact.name}': force on {words(contact.named[0])} {force(contact)}, largest pressure "

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -38,7 +38,7 @@ from abut.io.deck.pretension import cut
 from abut.io.deck.reasons import DeckError, Reasons
 from abut.io.deck.record import Deck, GeneralContact, Numbers, Pair
 from abut.io.deck.ties import near, tie_notes
-from abut.io.deck.time_histories import Course, courses, scaled, times, zero
+from abut.io.deck.time_histories import Course, courses, period, scaled, times, zero
 from abut.materials.material import Material
 from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
@@ -152,7 +152,9 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
         **vars(prescribed),
         plane=plane,
         kinematics="finite" if finite else "small",
-        solve=load_steps(deck) if finite else plastic_steps(deck) if yields(deck) else _options(deck),
+        solve=replace(
+            load_steps(deck) if finite else plastic_steps(deck) if yields(deck) else _options(deck), end=period(deck)
+        ),
     )
     model, output = with_tables(model, deck, asked, notes), output_options(model, deck, notes)
     return Translation(model, tuple(notes), deck.ignored, laws, output)

@@ -14,6 +14,7 @@ from abut.expression import Expression, Expressions
 from abut.io.atomic import write_text
 from abut.job.load import Job
 from abut.job.schema import JobFile
+from abut.job.times import with_shares, with_times
 from abut.materials.anisotropic import Anisotropic, Orthotropic
 from abut.materials.elastic import LinearElastic
 from abut.materials.hyperelastic import NeoHooke
@@ -68,7 +69,7 @@ def write_job(path: Path, job: Job) -> list[Path]:
     Raises InputError for what a job file cannot hold (functions of position) and where a file cannot be written."""
     mesh = path.with_suffix(".vtu")
     table = job_table(job.model, mesh.name, job.output)
-    JobFile.model_validate(table)
+    JobFile.model_validate(with_shares(table))
     head = [f"# from {job.path.name}"]
     head += [f"# ignored: {what}" for what in job.ignored] + [f"# {note}" for note in job.notes]
     write_mesh(mesh, job.model.mesh)
@@ -116,6 +117,7 @@ def job_table(model: Model, mesh: str, output: Output = EVERYTHING) -> Json:
     options = _plain(model.solve)
     if options:
         table["solve"] = options
+    table = with_times(table, model.solve.end)
     if written := _plain(output):
         table["output"] = written
     return table

@@ -36,6 +36,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "holds": "supports that come or go on the way",
         "rotations": "surfaces, node sets and bodies that turn about an axis; not with small kinematics",
         "probes": "points, lines and sets of nodes whose results are listed for every step",
+        "steps": "parts of the time, one after the other, whose names stand for times",
         "solve": "load steps, linear solver, iterations",
         "output": "where the results go, and which of them are written",
     },
@@ -358,12 +359,18 @@ MEANINGS: dict[str, dict[str, str]] = {
         "steps": "load steps, equal parts of a linear ramp; auto: one, with friction as many as the onset of slip takes. "
         "With friction, a step that does not converge is taken in parts, of which only the end is written. With contact "
         "under finite kinematics a number gives the longest step, and auto leaves all of them to abut",
-        "times": "ends of the load steps, rising to 1, where they are unequal; with contact under finite kinematics further "
-        "ones come between them where one does not converge",
+        "end": "time at the end of the run: all times of the file, those of amplitudes too, run from 0 to it",
+        "times": "ends of the load steps, rising to the end, where they are unequal; with contact under finite kinematics "
+        "further ones come between them where one does not converge",
         "linear": "linear solver; auto takes multigrid (amg) for large 3D models, and petsc on several processes",
         "max_iterations": "iterations allowed in a load step; with friction, of each method that is tried in it",
         "seconds": "time that the run may take: after it the run ends with the step or the iteration that it is in, the "
         "steps done so far are written, and abut run --restart goes on from there; left out: no limit",
+    },
+    "StepTable": {
+        "name": "a name of your choice; where a time is asked for it stands for the end of the step, start for 0",
+        "period": "how long it takes",
+        "increments": "load steps in it, of equal length; kinematics finite finds them where none of the steps has any",
     },
     "OutputTable": {
         "directory": "folder of the results, beside the job file",

@@ -18,6 +18,7 @@ from abut.job.material_tables import Materials, OverTemperatureTable
 from abut.job.other_names import key_called, kind_said
 from abut.job.parameters import parameters, worked_out
 from abut.job.schema import EquationTable, JobFile, MeshTable
+from abut.job.times import with_shares
 from abut.job.values import values
 from abut.materials.anisotropic import Anisotropic, Orthotropic
 from abut.materials.elastic import LinearElastic
@@ -120,11 +121,9 @@ def load_job(
         raise InputError(f"{path}: schema: expected 1, got {data.get('schema')!r}; begin the file with 'schema = 1'")
     try:
         names = parameters(data, settings or {})
-        data = worked_out(data, names)
+        file = JobFile.model_validate(with_shares(worked_out(data, names)))
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
-    try:
-        file = JobFile.model_validate(data)
     except ValidationError as error:
         problems = "\n  ".join(_explain(dict(e), data) for e in error.errors())
         raise InputError(f"{path}:\n  {problems}") from None

@@ -24,12 +24,9 @@ from abut.model.step_choice import WORDS as STEPS
 from abut.output.options import COMPRESSIONS, FAST, FIELDS, FORMATS, USUAL, VTU
 from abut.types import Json
 
-Points = Annotated[
-    list[Annotated[list[Number], Field(min_length=2, max_length=2)]],
-    Field(
-        description="pairs of time (0 to 1 over all steps) and factor; linear between; left out: the factor is the time"
-    ),
-]
+Time = Annotated[Number, WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "string"}]})]  # or the name of a step
+HISTORY = "pairs of time (0 to 1 over all steps) and factor; linear between; left out: the factor is the time"
+Points = Annotated[list[Annotated[list[Time], Field(min_length=2, max_length=2)]], Field(description=HISTORY)]
 
 
 def _varying(value: object) -> object:
@@ -188,10 +185,10 @@ class HoldTable(Table):
     x: Led = None
     y: Led = None
     z: Led = None
-    since: Number = Hold.since
-    reached: Number | None = None
-    until: Number | None = None
-    released: Number | None = None
+    since: Time = Hold.since
+    reached: Time | None = None
+    until: Time | None = None
+    released: Time | None = None
     amplitude: Points | None = None
 
 
@@ -206,7 +203,7 @@ class PreloadTable(Table):
     force: Number | None = None
     shortening: Number | None = None
     amplitude: Points | None = None
-    lock: Number | None = None
+    lock: Time | None = None
 
 
 class RotationTable(Table):
@@ -349,8 +346,17 @@ class SolveTable(Table):
     steps: int | Literal["auto"] = SolveOptions.steps
     linear: Annotated[str, OneOf(LINEAR)] = SolveOptions.linear
     max_iterations: int = SolveOptions.max_iterations
-    times: list[Number] | None = None
+    times: list[Time] | None = None
     seconds: Number | None = None
+    end: Number = 1.0
+
+
+class StepTable(Table):
+    """a part of the time, whose name stands for its end"""
+
+    name: str
+    period: Annotated[Number, Field(gt=0)] = 1.0
+    increments: Annotated[int, Field(ge=1)] = 1
 
 
 class OutputTable(Table):
@@ -381,6 +387,7 @@ class JobFile(Table):
     springs: list[SpringTable] = []
     holds: list[HoldTable] = []
     probes: list[ProbeTable] = []
+    steps: list[StepTable] = []
     solve: SolveTable = SolveTable()
     output: OutputTable = OutputTable()
 

@@ -65,7 +65,7 @@ class Amplitude:
         if first < -SLIGHTLY or last > 1.0 + SLIGHTLY:
             raise InputError(
                 f"amplitude: time runs from 0 to 1 over all load steps, but there is a point at "
-                f"{last if last > 1.0 else first:g}; divide the times by that of the end"
+                f"{last if last > 1.0 else first:g}; divide the times by that of the end (in a job file give solve.end)"
             )
         object.__setattr__(self, "points", points)
 

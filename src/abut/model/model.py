@@ -143,8 +143,8 @@ class Model:
     couplings: Sequence[Coupling] = ()
     preloads: Sequence[Preload] = ()
     springs: Sequence[Spring] = ()
-    physics: Sequence[Physics] = ()
     holds: Sequence[Hold] = ()
+    physics: Sequence[Physics] = ()
 
     def __post_init__(self) -> None:
         checks.instance(self.mesh, MeshRecord, "model: mesh", "a mesh (abut.Mesh)")

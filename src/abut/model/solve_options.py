@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Literal
 
@@ -34,6 +34,8 @@ class SolveOptions:
         Ends of the steps, increasing, over 0 up to 1, in place of ``steps``; the ramp's factor is the time.
     seconds : float, optional
         That a run may take, after which it ends with the steps done so far [s].
+    end : float
+        The time in results when all of it is done. Times of a model are shares of it, from 0 to 1.
 
     Raises
     ------
@@ -52,6 +54,7 @@ class SolveOptions:
     max_iterations: int = 50
     times: tuple[float, ...] | None = None
     seconds: float | None = None
+    end: float = field(default=1.0, compare=False)
 
     def __post_init__(self) -> None:
         for name, other in (("steps", f'"{AUTO}" or '), ("max_iterations", "")):
@@ -63,6 +66,7 @@ class SolveOptions:
         checks.choice(self.linear, "solve.linear", LINEAR)
         if self.seconds is not None:
             object.__setattr__(self, "seconds", checks.positive(self.seconds, "solve.seconds"))
+        object.__setattr__(self, "end", checks.positive(self.end, "solve.end"))
         if self.times is not None:
             self._check_times()
 
@@ -76,6 +80,10 @@ class SolveOptions:
         """Time at the end of each load step."""
         count = self.steps if isinstance(self.steps, int) else 1
         return self.times or tuple(number / count for number in range(1, count + 1))
+
+    def said(self, share: float) -> str:
+        """A time in words, from its share of the end."""
+        return f"{share * self.end:.4g} of {self.end:.4g}"
 
     def _check_times(self) -> None:
         try:

@@ -152,11 +152,12 @@ def _wanted(solution: Solution, step: Step, output: Output, final: bool) -> bool
 def write_index(folder: Path, solution: Solution, output: Output, final: bool = True) -> None:
     """The files that tell of all steps; ``output`` and ``final`` as in ``write_steps``."""
     shown = [step for step in solution.steps if _wanted(solution, step, output, final)]
+    end = solution.model.solve.end
     if output.bodies:
-        _write_collection(folder, "fields", shown, [found_name(folder, step.number) for step in shown])
+        _write_collection(folder, "fields", shown, end, [found_name(folder, step.number) for step in shown])
     files = [_contact_files(step) for step in shown]
     for index, label in enumerate(_contact_labels(solution.steps[-1]) if output.contacts else ()):
-        _write_collection(folder, label, shown, [names[index] for names in files])
+        _write_collection(folder, label, shown, end, [names[index] for names in files])
     write_text(folder / forces.FILE, forces.table(solution))
     for index, name in enumerate(probes.table_names([probe.name for probe in solution.model.probes])):
         write_text(folder / name, probes.table(solution.steps, index, solution.model.probes[index].steps))
@@ -173,7 +174,7 @@ def summary(solution: Solution) -> Json:
         "dofs": solution.dofs,
         "solver": solution.solver,
         "processes": solution.processes,
-        "steps": [_step_summary(step) for step in solution.steps],
+        "steps": [{**_step_summary(step), "time": step.factor * solution.model.solve.end} for step in solution.steps],
         "certificate": {
             "passed": all(check.passed for check in solution.certificate),
             "checks": [
@@ -337,9 +338,10 @@ def _log(solution: Solution) -> str:
     return "".join(json.dumps(line) + "\n" for line in lines)
 
 
-def _write_collection(folder: Path, stem: str, steps: Sequence[Step], files: Sequence[str]) -> None:
+def _write_collection(folder: Path, stem: str, steps: Sequence[Step], end: float, files: Sequence[str]) -> None:
     entries = "".join(
-        f'    <DataSet timestep="{step.factor:.12g}" part="0" file="{file}"/>\n' for step, file in zip(steps, files)
+        f'    <DataSet timestep="{step.factor * end:.12g}" part="0" file="{file}"/>\n'
+        for step, file in zip(steps, files)
     )
     write_text(
         folder / f"{stem}.pvd",

@@ -153,7 +153,7 @@ def _size(value: float, scale: float) -> str:
 def _reached(solution: Solution) -> str:
     """Up to which time steps have converged, in words."""
     times = [step.factor for step in solution.steps if step.converged]
-    return f", time {times[-1]:.4g} of 1 reached" if times else ""
+    return f", time {solution.model.solve.said(times[-1])} reached" if times else ""
 
 
 def _certificate(solution: Solution) -> str:

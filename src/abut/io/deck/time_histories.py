@@ -16,6 +16,11 @@ Key = tuple[float, ...]
 RAMP = 1e-9  # of a step: the time a value takes to jump where an amplitude begins elsewhere than the step before ended
 
 
+def period(deck: Deck) -> float:
+    """Length of all steps together, 1 where they have none."""
+    return sum(step.period for step in deck.steps) or 1.0
+
+
 def ends(deck: Deck) -> tuple[float, ...]:
     """Times at which the steps end, the last of them 1."""
     total = sum(step.period for step in deck.steps)
