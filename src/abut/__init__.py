@@ -23,11 +23,13 @@ if TYPE_CHECKING:
         Amplitude,
         Axes,
         BodyForce,
+        Buckling,
         Centrifugal,
         Contact,
         Coupling,
         Equation,
         Force,
+        Frequencies,
         Gravity,
         Integration,
         Model,
@@ -68,8 +70,8 @@ _HOME = {  # of public names that do not come from abut.model
 }  # fmt: skip
 
 __all__ = [
-    "AbutError", "Amplitude", "Anisotropic", "ArrudaBoyce", "Axes", "BodyForce", "Centrifugal", "Contact",
-    "ConvergenceError", "Coupling", "Equation", "Force", "FoundContact", "Gravity", "Hencky", "InputError",
+    "AbutError", "Amplitude", "Anisotropic", "ArrudaBoyce", "Axes", "BodyForce", "Buckling", "Centrifugal", "Contact",
+    "ConvergenceError", "Coupling", "Equation", "Force", "FoundContact", "Frequencies", "Gravity", "Hencky", "InputError",
     "Integration", "LinearElastic", "Mesh", "Model", "Moment", "MooneyRivlin", "NeoHooke", "NodalForce", "Ogden",
     "Orthotropic", "Output", "OverTemperature", "Plastic", "Preload", "Pressure", "PressureOverclosure", "Probe",
     "Rigid", "Rotation", "SingularModelError", "Solid", "Solution", "SolveOptions", "Spring", "Support", "Temperature",

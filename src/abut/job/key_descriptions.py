@@ -33,6 +33,8 @@ MEANINGS: dict[str, dict[str, str]] = {
         "springs": "springs to the ground, between points, and beds under surfaces",
         "rotations": "surfaces, node sets and bodies that turn about an axis; not with small kinematics",
         "probes": "points, lines and sets of nodes whose results are listed for every step",
+        "frequencies": "natural frequencies of the assembly as it is loaded at the end of the last step",
+        "buckling": "linear buckling: factors of the stresses at the end of the last step; kinematics small",
         "solve": "load steps, linear solver, iterations",
         "output": "where the results go, and which of them are written",
     },
@@ -338,6 +340,11 @@ MEANINGS: dict[str, dict[str, str]] = {
         "contact": "name of the contact whose pressure and gap are read; left out: the one that the probe lies on",
         "body": "name of the body that is read where points lie on several; left out: the first in the mesh",
     },
+    "FrequenciesTable": {
+        "count": "how many, from the lowest",
+        "stiffening": "whether stresses at the end of the last step change the stiffness; under finite kinematics always",
+    },
+    "BucklingTable": {"count": "how many positive factors, from the smallest"},
     "SolveTable": {
         "steps": "load steps, equal parts of a linear ramp; auto: one, with friction as many as the onset of slip takes. "
         "With friction, a step that does not converge is taken in parts, of which only the end is written. With contact "

@@ -17,6 +17,7 @@ from abut.model.contact import GEOMETRIES, KINDS, LAWS, METHODS, PRESSURES, RULE
 from abut.model.coupling import KINDS as COUPLINGS
 from abut.model.coupling import Coupling
 from abut.model.kinematics import KINEMATICS
+from abut.model.modes import Buckling, Frequencies
 from abut.model.probe import QUANTITIES
 from abut.model.solve_options import LINEAR, SolveOptions
 from abut.output.options import FIELDS, FORMATS, STEPS, USUAL, VTU
@@ -324,6 +325,15 @@ class ProbeTable(Table):
     body: str | None = None
 
 
+class FrequenciesTable(Table):
+    count: int = Frequencies.count
+    stiffening: bool = Frequencies.stiffening
+
+
+class BucklingTable(Table):
+    count: int = Buckling.count
+
+
 class SolveTable(Table):
     steps: int | Literal["auto"] = SolveOptions.steps
     linear: Annotated[str, OneOf(LINEAR)] = SolveOptions.linear
@@ -357,6 +367,8 @@ class JobFile(Table):
     preloads: list[PreloadTable] = []
     springs: list[SpringTable] = []
     probes: list[ProbeTable] = []
+    frequencies: FrequenciesTable | None = None
+    buckling: BucklingTable | None = None
     solve: SolveTable = SolveTable()
     output: OutputTable = OutputTable()
 

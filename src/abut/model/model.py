@@ -38,6 +38,7 @@ from abut.model.consistency import check_equations, check_filled, check_loads, c
 from abut.model.contact import GEOMETRIES, Contact
 from abut.model.coupling import Coupling, check_couplings, moving_points
 from abut.model.kinematics import check_finite, check_kinematics
+from abut.model.modes import Buckling, Frequencies
 from abut.model.physics import TEMPERATURE, Physics, dofs_of
 from abut.model.preload import Preload, cut_sections
 from abut.model.probe import Probe, check_probes
@@ -53,7 +54,7 @@ PLANES = ("strain", "stress", "axisymmetric")
 RECORDS: dict[str, tuple[type, ...]] = {  # what the lists of a model are of
     "solids": (Solid,), "supports": (Support,), "loads": get_args(Load), "contacts": (Contact,), "equations": (Equation,),
     "rigid": (Rigid,), "probes": (Probe,), "rotations": (Rotation,), "couplings": (Coupling,), "preloads": (Preload,),
-    "springs": (Spring,),
+    "springs": (Spring,), "modes": (Frequencies, Buckling),
 }  # fmt: skip
 
 
@@ -101,6 +102,8 @@ class Model:
         To the ground, between points, and beds under surfaces.
     physics : sequence of abut.model.physics.Physics
         Fields beside displacements, with terms of their own in the balance; on one process, with the direct solver.
+    modes : sequence of Frequencies and Buckling
+        What is found about the state at the end of the last step; on one process.
 
     Raises
     ------
@@ -142,6 +145,7 @@ class Model:
     preloads: Sequence[Preload] = ()
     springs: Sequence[Spring] = ()
     physics: Sequence[Physics] = ()
+    modes: Sequence[Frequencies | Buckling] = ()
 
     def __post_init__(self) -> None:
         checks.instance(self.mesh, MeshRecord, "model: mesh", "a mesh (abut.Mesh)")
@@ -311,12 +315,8 @@ class Model:
 
     def _named(self) -> list[tuple[str, str | None]]:
         """Places in the mesh that entries name, and where."""
-        lists = {
-            "supports": self.supports,
-            "loads": self.loads,
-            "couplings": self.couplings,
-            "rotations": self.rotations,
-        }
+        names = ("supports", "loads", "couplings", "rotations")
+        lists = {name: getattr(self, name) for name in names}
         named = [(f"{kind}[{i}].on", entry.on) for kind, entries in lists.items() for i, entry in enumerate(entries)]
         for i, contact in enumerate(self.contacts):
             every = [name for side in contact.named for name in ([side] if isinstance(side, str) else side)]
