@@ -18,6 +18,7 @@ from abut.decks.couplings import couplings, reference_loads, reference_nodes, un
 from abut.decks.elastic import elastic_law
 from abut.decks.friction import friction_options, path_notes
 from abut.decks.large import finite_notes, is_finite, load_steps, plastic_steps, unsupported, yields
+from abut.decks.modes import modes
 from abut.decks.overclosure import overclosure_notes, own_laws, softened
 from abut.decks.plane import plane_of, thickness
 from abut.decks.rigid import join, rigid_bodies, with_parts_coupled
@@ -147,6 +148,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
         springs=prescribed.springs,
         plane=plane,
         kinematics="finite" if finite else "small",
+        modes=modes(deck),
         solve=load_steps(deck) if finite else plastic_steps(deck) if yields(deck) else _options(deck),
     )
     return Translation(model, tuple(notes), deck.ignored, laws)

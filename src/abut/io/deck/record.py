@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.io.deck.elements import ElementType
+from abut.io.deck.mode_cards import Modes
 from abut.io.deck.reasons import Place
 
 Numbers = NDArray[np.int64]
@@ -305,7 +306,7 @@ class Amplitude:
 class Deck:
     """A whole deck. nodes (n,) sorted; points (n, 3); sets and surfaces by name as the deck first spells it; fixed: supports
     outside the steps; initial: node -> temperature; quiet, ignored: see ``supported.Sifted``; small_sliding: a
-    contact pair asks for it."""
+    contact pair asks for it; modes: what the last step asks for beside."""
 
     path: str
     nodes: Numbers
@@ -332,6 +333,7 @@ class Deck:
     small_sliding: bool = False
     couplings: tuple[Coupling, ...] = ()
     springs: tuple[Spring, ...] = ()
+    modes: Modes | None = None
 
     @property
     def references(self) -> frozenset[int]:
