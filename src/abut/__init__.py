@@ -23,11 +23,13 @@ if TYPE_CHECKING:
         Amplitude,
         Axes,
         BodyForce,
+        Buckling,
         Centrifugal,
         Contact,
         Coupling,
         Equation,
         Force,
+        Frequencies,
         Gravity,
         Hold,
         Integration,
@@ -69,10 +71,10 @@ _HOME = {  # of public names that do not come from abut.model
 }  # fmt: skip
 
 __all__ = [
-    "AbutError", "Amplitude", "Anisotropic", "ArrudaBoyce", "Axes", "BodyForce", "Centrifugal", "Contact",
-    "ConvergenceError", "Coupling", "Equation", "Force", "FoundContact", "Gravity", "Hencky", "Hold", "InputError",
-    "Integration", "LinearElastic", "Mesh", "Model", "Moment", "MooneyRivlin", "NeoHooke", "NodalForce", "Ogden",
-    "Orthotropic", "Output", "OverTemperature", "Plastic", "Preload", "Pressure", "PressureOverclosure", "Probe",
+    "AbutError", "Amplitude", "Anisotropic", "ArrudaBoyce", "Axes", "BodyForce", "Buckling", "Centrifugal", "Contact",
+    "ConvergenceError", "Coupling", "Equation", "Force", "FoundContact", "Frequencies", "Gravity", "Hencky", "Hold",
+    "InputError", "Integration", "LinearElastic", "Mesh", "Model", "Moment", "MooneyRivlin", "NeoHooke", "NodalForce",
+    "Ogden", "Orthotropic", "Output", "OverTemperature", "Plastic", "Preload", "Pressure", "PressureOverclosure", "Probe",
     "Rigid", "Rotation", "SingularModelError", "Solid", "Solution", "SolveOptions", "Spring", "Support", "Temperature",
     "Term", "Traction", "Yeoh", "add_surfaces", "check", "find_contacts", "plot", "solve", "to_pyvista", "write",
     "write_report",

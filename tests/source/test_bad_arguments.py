@@ -79,6 +79,8 @@ VALID: dict[str, tuple[dict[str, Any], Callable[[Any], object]]] = {  # argument
     "Rigid": ({"body": "a"}, within("rigid")),
     "Rotation": ({"on": "b.left", "angle": 1.0, "centre": (0.0, 0.0)}, within("rotations")),
     "Solid": ({"body": "a", "material": STEEL}, kept),
+    "Frequencies": ({"count": 1}, within("modes")),
+    "Buckling": ({"count": 1}, within("modes")),
     "SolveOptions": ({}, lambda solve: replace(MODEL, solve=solve)),
     "Spring": ({"name": "s", "on": "b.right", "x": 1.0}, within("springs")),
     "Support": ({"on": "b.right", "x": 0.0}, within("supports")),

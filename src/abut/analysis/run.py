@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from abut.analysis.deadline import Deadline
 from abut.analysis.limit_load import limit_load, yields
 from abut.analysis.linear_solvers import assembled_bodies, linear_solver, setting_up, solver_kind
+from abut.analysis.modes import check_modes, modes
 from abut.analysis.parts import whole
 from abut.analysis.results import Acted, step_result
 from abut.analysis.step_records import check_order, restored, saved_step
@@ -35,7 +36,7 @@ from abut.problem.onset import Most, Onset, onset
 from abut.problem.restraint import require_balance
 from abut.problem.stabilising import is_dragged
 from abut.problem.step_error import landed_in
-from abut.solution import Iteration, Observer, OnStep, Phase, Saved, Solution, Step
+from abut.solution import Iteration, ModesResult, Observer, OnStep, Phase, Saved, Solution, Step
 from abut.solution.state import State
 
 if TYPE_CHECKING:
@@ -74,6 +75,8 @@ class Run:
     steps: list[Step] = field(default_factory=list)
     acted: Acted = None  # what acted at the end of the last step, with friction or finite kinematics
     parts: list[tuple[Attempt, Step]] = field(default_factory=list)  # of the step that is being solved
+    ended: tuple[State, Attempt] | None = None  # the last one that converged, and where it began
+    modes: tuple[ModesResult, ...] = ()
 
     @classmethod
     def of(
@@ -82,6 +85,7 @@ class Run:
     ) -> Run:  # fmt: skip
         """Set a run up. Raises InputError and SingularModelError for a model that cannot be solved."""
         told, clock, deadline = Told(observe), Clock(), Deadline(model.solve.seconds)
+        check_modes(model, 1 if team is None else team.size)
         places = find_places(model)
         for text in (*choices(model.contacts), *(text for place in places for text in place.notes)):
             told.note(text)
@@ -182,6 +186,14 @@ class Run:
         if self.solver.effort:
             self.told.note(self.solver.effort)
 
+    def vibrate(self) -> None:
+        """What the model asks for about the state at the end, if that is there."""
+        if self.ended is None or not self.model.modes or not all(step.converged for step in self.steps):
+            return
+        self.told.observe(Phase("frequencies and buckling"))
+        self.modes = modes(self.assembled, *self.ended)
+        self.clock.mark("modes")
+
     def _onset(self, earlier: State | None, before: State, now: State) -> Onset:
         steps, factors = self.settings.steps, weights(self.model.histories, now.time)
         most = Most(1.0 / steps.points, steps.aim * steps.bent)
@@ -219,14 +231,18 @@ class Run:
         """The steps up to here; complete: there are no more to come."""
         n_free, timings = self.assembled.problem.n_free, dict(self.clock.timings)
         return Solution(
-            self.model, tuple(self.steps), n_free, self.solver.name, tuple(self.told.notes), timings, complete
-        )
+            self.model, tuple(self.steps), n_free, self.solver.name, tuple(self.told.notes), timings, complete,
+            modes=self.modes,
+        )  # fmt: skip
 
     def _result(self, attempt: Attempt, sized: bool = True) -> Step:
         before = [*self.steps, *(step for _, step in self.parts)]
         step, self.acted = step_result(self.assembled, attempt, before, self.acted)
         if sized:
             _check_size(self.model, step.displacement, self.told.note)
+        if attempt.converged:
+            began = self.assembled.problem.start() if self.ended is None else self.ended[1].state
+            self.ended = began, replace(attempt, balance=None)
         return replace(step, probes=tuple(read(place, step) for place in self.places))
 
     def _end(self, attempt: Attempt) -> None:

@@ -97,6 +97,7 @@ def solve(
     first = run.restore(resume)
     try:
         run.march(first, resume)
+        run.vibrate()
     except OutOfTime as reason:
         if not run.steps:
             raise

@@ -277,6 +277,7 @@ def _print_result(solution: Solution, directory: Path) -> None:
     from abut.diagnosis.advice import remedies
     from abut.diagnosis.cures import cure
     from abut.report.contact_words import force, lines
+    from abut.report.modes import mode_lines
 
     if not (solution.converged and solution.complete):
         last = solution.steps[-1]
@@ -291,6 +292,9 @@ def _print_result(solution: Solution, directory: Path) -> None:
             show(f"  {line}")
     for result in solution.probes:
         show(f"probe '{result.name}': {_read(result)}")
+    for modes in solution.modes:
+        for line in mode_lines(modes):
+            show(line)
     show("certificate   value      limit")
     for check in solution.certificate:
         name = f"{check.contact}: {check.name}" if check.contact else check.name

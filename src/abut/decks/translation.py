@@ -20,6 +20,7 @@ from abut.decks.friction import friction_options, path_notes
 from abut.decks.holds import holds
 from abut.decks.large import finite_notes, is_finite, load_steps, plastic_steps, unsupported, yields
 from abut.decks.metal import metal_law
+from abut.decks.modes import modes
 from abut.decks.output import output_options, tables, with_tables
 from abut.decks.overclosure import overclosure_notes, own_laws, softened
 from abut.decks.plane import plane_of, thickness
@@ -152,6 +153,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
         **vars(prescribed),
         plane=plane,
         kinematics="finite" if finite else "small",
+        modes=modes(deck),
         solve=replace(
             load_steps(deck) if finite else plastic_steps(deck) if yields(deck) else _options(deck), end=period(deck)
         ),

@@ -14,6 +14,7 @@ from abut.diagnosis.contactor import swap
 from abut.model import LAWS, METHODS, Contact
 from abut.model.locking import locking
 from abut.solution import Check, ContactResult, Solution
+from abut.solution.modes import BUCKLING, FREQUENCIES
 from abut.solution.stress_error import ContactStressError
 
 SECOND = " (second pass)"
@@ -29,6 +30,8 @@ def cure(check: Check, solution: Solution) -> str:
         return ""
     if check.name == "stress error":
         return _stress_error(solution)
+    if check.name.partition(":")[0] in (FREQUENCIES, BUCKLING):
+        return OF_MODES[check.name.partition(": ")[2]]
     if check.name == "locking":
         return "; ".join(one.cure for one in locking(solution.model))
     if not check.contact:
@@ -49,6 +52,11 @@ def cures(solution: Solution) -> tuple[tuple[Check, str], ...]:
     return tuple((check, cure(check, solution)) for check in solution.certificate if not check.passed)
 
 
+OF_MODES = {
+    "residual": f"{SINGULAR_HINT}; very thin or very unlike parts leave fewer digits",
+    "orthogonality": "ask for a few modes more or less, so that the last one is none of a group of equal ones",
+    "missing modes": "ask for more modes (count); where many are equal some are easily missed",
+}
 MODEL = {
     "model balance": f'solve again with solve.linear = "direct"; if it stays, {SINGULAR_HINT}',
     "energy balance": 'solve again with solve.linear = "direct"; if it stays, raise solve.max_iterations',

@@ -14,7 +14,7 @@ from abut.errors import SingularModelError
 from abut.model import Model
 from abut.model.conditions import weights
 from abut.problem.constraints import Constraints
-from abut.problem.free_modes import free_mode_springs
+from abut.problem.free_modes import floats_of, free_mode_springs
 from abut.problem.held_motions import neutral_in
 from abut.problem.loads import loads
 from abut.problem.pair import Pair
@@ -59,7 +59,9 @@ def _unheld(model: Model, restrained: Restraint) -> list[Finding]:
     try:
         unit = sp.identity(constraints.free.shape[1], format="csr")
         neutral, settled = neutral_in(model, restrained, ends)
-        springs = free_mode_springs(restrained.rigid, restrained.everything, constraints, unit, ends, neutral, settled)
+        springs = free_mode_springs(
+            restrained.rigid, restrained.everything, constraints, unit, ends, neutral, settled, floats_of(model)
+        )
         factors = [weights(model.histories, time) for time in model.ends]
         require_held(restrained.helped_by(springs.gram), ends, factors)
     except SingularModelError as error:

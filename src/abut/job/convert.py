@@ -27,9 +27,11 @@ from abut.mesh.write import write_mesh
 from abut.model import (
     Amplitude,
     BodyForce,
+    Buckling,
     Centrifugal,
     Contact,
     Force,
+    Frequencies,
     Gravity,
     Integration,
     Load,
@@ -114,6 +116,14 @@ def job_table(model: Model, mesh: str, output: Output = EVERYTHING) -> Json:
         records = [of(record) for record in getattr(model, name)]
         if records:
             table[name] = records
+    for name, kind in (("frequencies", Frequencies), ("buckling", Buckling)):
+        wanted = [item for item in model.modes if isinstance(item, kind)]
+        if len(wanted) > 1:
+            raise InputError(
+                f"a job file holds one table [{name}], and the model asks for {len(wanted)}; keep one of them"
+            )
+        if wanted:
+            table[name] = _plain(wanted[0])
     options = _plain(model.solve)
     if options:
         table["solve"] = options

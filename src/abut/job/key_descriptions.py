@@ -5,6 +5,7 @@ A unit stands at the end in square brackets: force, length, mass, time and tempe
 
 from __future__ import annotations
 
+from abut.job.run_keys import RUN
 from abut.types import Json
 
 ANYWHERE = {  # keys that mean the same in every table
@@ -37,6 +38,8 @@ MEANINGS: dict[str, dict[str, str]] = {
         "rotations": "surfaces, node sets and bodies that turn about an axis; not with small kinematics",
         "probes": "points, lines and sets of nodes whose results are listed for every step",
         "steps": "parts of the time, one after the other, whose names stand for times",
+        "frequencies": "natural frequencies of the assembly as it is loaded at the end of the last step",
+        "buckling": "linear buckling: factors of the stresses at the end of the last step; kinematics small",
         "solve": "load steps, linear solver, iterations",
         "output": "where the results go, and which of them are written",
     },
@@ -355,32 +358,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "body": "name of the body that is read where points lie on several; left out: the first in the mesh",
         "steps": "steps in its table: all, last, n for every n-th, or a list of numbers; the last one always is",
     },
-    "SolveTable": {
-        "steps": "load steps, equal parts of a linear ramp; auto: one, with friction as many as the onset of slip takes. "
-        "With friction, a step that does not converge is taken in parts, of which only the end is written. With contact "
-        "under finite kinematics a number gives the longest step, and auto leaves all of them to abut",
-        "end": "time at the end of the run: all times of the file, those of amplitudes too, run from 0 to it",
-        "times": "ends of the load steps, rising to the end, where they are unequal; with contact under finite kinematics "
-        "further ones come between them where one does not converge",
-        "linear": "linear solver; auto takes multigrid (amg) for large 3D models, and petsc on several processes",
-        "max_iterations": "iterations allowed in a load step; with friction, of each method that is tried in it",
-        "seconds": "time that the run may take: after it the run ends with the step or the iteration that it is in, the "
-        "steps done so far are written, and abut run --restart goes on from there; left out: no limit",
-    },
-    "StepTable": {
-        "name": "a name of your choice; where a time is asked for it stands for the end of the step, start for 0",
-        "period": "how long it takes",
-        "increments": "load steps in it, of equal length; kinematics finite finds them where none of the steps has any",
-    },
-    "OutputTable": {
-        "directory": "folder of the results, beside the job file",
-        "steps": "steps with result files: all, last, n for every n-th, or a list of numbers; the last one always has them. "
-        "Tables, summary and report have every step",
-        "fields": "what result files hold: fields of the bodies, and contact for the files of contact surfaces; "
-        "principal-stress is left out unless it is named",
-        "formats": "vtu for ParaView; frd for CalculiX GraphiX: fields.frd, written at the end of the run",
-        "compression": "fast, or small: VTU files up to two fifths smaller, which take longer to write; the same numbers",
-    },
+    **RUN,
 }
 
 

@@ -32,10 +32,12 @@ from abut.mesh import make
 from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
 from abut.model import (
+    Buckling,
     Centrifugal,
     Coupling,
     Equation,
     Force,
+    Frequencies,
     Gravity,
     Hold,
     Load,
@@ -187,6 +189,10 @@ def _model(file: JobFile, folder: Path, refine: int) -> tuple[Model, Resolved]:
         springs=[Spring(**values(s, f"springs[{i}]")) for i, s in enumerate(file.springs)],
         holds=[Hold(**values(h, f"holds[{i}]")) for i, h in enumerate(file.holds)],
         probes=[Probe(**values(probe, f"probes[{i}]")) for i, probe in enumerate(file.probes)],
+        modes=[
+            *([] if file.frequencies is None else [Frequencies(**file.frequencies.model_dump())]),
+            *([] if file.buckling is None else [Buckling(**file.buckling.model_dump())]),
+        ],
     )
     return model, resolved
 

@@ -12,6 +12,7 @@ from abut.errors import InputError
 from abut.fields import number_or_field
 from abut.job.key_descriptions import describe
 from abut.job.material_tables import AxesTable, Materials
+from abut.job.run_tables import BucklingTable, FrequenciesTable, OutputTable, SolveTable, StepTable, Time
 from abut.job.table import Number, OneOf, Table
 from abut.model.contact import GEOMETRIES, KINDS, LAWS, METHODS, PRESSURES, RULES, Contact, Integration
 from abut.model.coupling import KINDS as COUPLINGS
@@ -19,12 +20,9 @@ from abut.model.coupling import Coupling
 from abut.model.hold import STAY, Hold
 from abut.model.kinematics import KINEMATICS
 from abut.model.probe import QUANTITIES
-from abut.model.solve_options import LINEAR, SolveOptions
 from abut.model.step_choice import WORDS as STEPS
-from abut.output.options import COMPRESSIONS, FAST, FIELDS, FORMATS, USUAL, VTU
 from abut.types import Json
 
-Time = Annotated[Number, WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "string"}]})]  # or the name of a step
 HISTORY = "pairs of time (0 to 1 over all steps) and factor; linear between; left out: the factor is the time"
 Points = Annotated[list[Annotated[list[Time], Field(min_length=2, max_length=2)]], Field(description=HISTORY)]
 
@@ -342,31 +340,6 @@ class ProbeTable(Table):
     steps: int | list[int] | Annotated[str, OneOf(STEPS)] = "all"
 
 
-class SolveTable(Table):
-    steps: int | Literal["auto"] = SolveOptions.steps
-    linear: Annotated[str, OneOf(LINEAR)] = SolveOptions.linear
-    max_iterations: int = SolveOptions.max_iterations
-    times: list[Time] | None = None
-    seconds: Number | None = None
-    end: Number = 1.0
-
-
-class StepTable(Table):
-    """a part of the time, whose name stands for its end"""
-
-    name: str
-    period: Annotated[Number, Field(gt=0)] = 1.0
-    increments: Annotated[int, Field(ge=1)] = 1
-
-
-class OutputTable(Table):
-    directory: str = "results"
-    steps: int | list[int] | Annotated[str, OneOf(STEPS)] = "all"
-    fields: list[Annotated[str, OneOf(FIELDS)]] = list(USUAL)
-    formats: list[Annotated[str, OneOf(FORMATS)]] = [VTU]
-    compression: Annotated[str, OneOf(COMPRESSIONS)] = FAST
-
-
 class JobFile(Table):
     """A whole job file."""
 
@@ -388,6 +361,8 @@ class JobFile(Table):
     holds: list[HoldTable] = []
     probes: list[ProbeTable] = []
     steps: list[StepTable] = []
+    frequencies: FrequenciesTable | None = None
+    buckling: BucklingTable | None = None
     solve: SolveTable = SolveTable()
     output: OutputTable = OutputTable()
 

@@ -120,6 +120,13 @@ class Factorization:
         except pardiso().pardiso_wrapper.PyPardisoError:
             self._sound = False
 
+    @property
+    def negative(self) -> int | None:
+        """How many eigenvalues are negative, by the signs of the pivots; None where these do not tell."""
+        if self._solver is None or not self._sound:
+            return None
+        return int(self._solver.iparm[22])
+
     def solve(self, rhs: NDArray[np.float64]) -> NDArray[np.float64]:
         """As ``solve``, which takes over where the factors are not accurate. Raises SingularModelError."""
         size = np.abs(rhs).max(initial=0.0)

@@ -8,6 +8,7 @@ from abut.model.coupling import Coupling
 from abut.model.hold import Hold
 from abut.model.loads import Force, Moment, NodalForce, Pressure, Temperature, Traction
 from abut.model.model import PLANES, Model
+from abut.model.modes import Buckling, Frequencies
 from abut.model.preload import Preload
 from abut.model.probe import Probe
 from abut.model.rotation import Rotation
@@ -16,8 +17,8 @@ from abut.model.solve_options import SolveOptions
 from abut.model.spring import Spring
 
 __all__ = [
-    "LAWS", "METHODS", "PLANES", "PRESSURES", "RULES", "Amplitude", "Axes", "BodyForce", "Centrifugal", "Contact",
-    "Coupling", "Equation", "Force", "Gravity", "History", "Hold", "Integration", "Load", "Model", "Moment", "NodalForce",
-    "Preload", "Pressure", "Probe", "Rigid", "Rotation", "Solid", "SolveOptions", "Spring", "Support", "Temperature",
-    "Term", "Traction",
+    "LAWS", "METHODS", "PLANES", "PRESSURES", "RULES", "Amplitude", "Axes", "BodyForce", "Buckling", "Centrifugal",
+    "Contact", "Coupling", "Equation", "Force", "Frequencies", "Gravity", "History", "Hold", "Integration", "Load", "Model",
+    "Moment", "NodalForce", "Preload", "Pressure", "Probe", "Rigid", "Rotation", "Solid", "SolveOptions", "Spring",
+    "Support", "Temperature", "Term", "Traction",
 ]  # fmt: skip

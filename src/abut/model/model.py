@@ -40,6 +40,7 @@ from abut.model.contact import GEOMETRIES, Contact
 from abut.model.coupling import Coupling, check_couplings, moving_points
 from abut.model.hold import STAY, Hold, check_holds
 from abut.model.kinematics import check_finite, check_kinematics
+from abut.model.modes import Buckling, Frequencies
 from abut.model.physics import TEMPERATURE, Physics, dofs_of
 from abut.model.preload import Preload, cut_sections
 from abut.model.probe import Probe, check_probes
@@ -55,7 +56,7 @@ PLANES = ("strain", "stress", "axisymmetric")
 RECORDS: dict[str, tuple[type, ...]] = {  # what the lists of a model are of
     "solids": (Solid,), "supports": (Support,), "loads": get_args(Load), "contacts": (Contact,), "equations": (Equation,),
     "rigid": (Rigid,), "probes": (Probe,), "rotations": (Rotation,), "couplings": (Coupling,), "preloads": (Preload,),
-    "springs": (Spring,), "holds": (Hold,),
+    "springs": (Spring,), "holds": (Hold,), "modes": (Frequencies, Buckling),
 }  # fmt: skip
 
 
@@ -103,6 +104,8 @@ class Model:
         Springs to the ground, between points, beds under surfaces; supports that come or go.
     physics : sequence of abut.model.physics.Physics
         Fields beside displacements, with terms of their own in the balance; on one process, with the direct solver.
+    modes : sequence of Frequencies and Buckling
+        What is found about the state at the end of the last step; on one process.
 
     Raises
     ------
@@ -145,6 +148,7 @@ class Model:
     springs: Sequence[Spring] = ()
     holds: Sequence[Hold] = ()
     physics: Sequence[Physics] = ()
+    modes: Sequence[Frequencies | Buckling] = ()
 
     def __post_init__(self) -> None:
         checks.instance(self.mesh, MeshRecord, "model: mesh", "a mesh (abut.Mesh)")
@@ -314,12 +318,8 @@ class Model:
 
     def _named(self) -> list[tuple[str, str | None]]:
         """Places in the mesh that entries name, and where."""
-        lists = {
-            "supports": self.supports,
-            "loads": self.loads,
-            "couplings": self.couplings,
-            "rotations": self.rotations,
-        }
+        names = ("supports", "loads", "couplings", "rotations")
+        lists = {name: getattr(self, name) for name in names}
         named = [(f"{kind}[{i}].on", entry.on) for kind, entries in lists.items() for i, entry in enumerate(entries)]
         for i, contact in enumerate(self.contacts):
             every = [name for side in contact.named for name in ([side] if isinstance(side, str) else side)]

@@ -31,9 +31,10 @@ from abut.output.contact_rows import (
     more_values,
     number,
 )
-from abut.output.earlier import INDEX, remove_others
+from abut.output.earlier import INDEX, OPTIONAL, remove_others
 from abut.output.fields import WriteFields, found_name, is_whole, write_fields
 from abut.output.lock import Lock
+from abut.output.modes import modes_summary, names, write_modes
 from abut.output.options import EVERYTHING, Output, single
 from abut.report import Origin, write_report
 from abut.solution import PreloadResult, Solution, Step
@@ -52,7 +53,8 @@ def write(
     """Write everything about a solution to a directory, which is created if needed.
 
     report.html, summary.json, history.csv, forces.csv, run.jsonl; fields.pvd with a VTU file a step; contact_NAME.pvd
-    likewise for each contact; probe_NAME.csv for each probe; fields.frd where ``output`` asks for it.
+    likewise for each contact; probe_NAME.csv for each probe; modes.csv and modes.vtu where the model asks for modes;
+    fields.frd where ``output`` asks for it.
 
     Parameters
     ----------
@@ -124,7 +126,9 @@ def write_held(
     shown = [step for step in solution.steps if _wanted(solution, step, output, True)]
     if output.frd:
         frd.write(folder, solution, shown, output)
-    index = [name for name in INDEX if output.frd or name != frd.FILE]
+    write_modes(folder, solution, output.bodies)
+    mine = [*names(solution, output.bodies), *([frd.FILE] if output.frd else [])]
+    index = [name for name in INDEX if name not in OPTIONAL or name in mine]
     remove_others(folder, len(solution.steps), [*index, *_files(solution, shown, output)])
     write_report(solution, folder / "report.html", origin or Origin(folder.absolute().name))
     return folder
@@ -175,6 +179,7 @@ def summary(solution: Solution) -> Json:
         "solver": solution.solver,
         "processes": solution.processes,
         "steps": [{**_step_summary(step), "time": step.factor * solution.model.solve.end} for step in solution.steps],
+        **modes_summary(solution),
         "certificate": {
             "passed": all(check.passed for check in solution.certificate),
             "checks": [

@@ -21,7 +21,7 @@ from abut.problem.current import Current
 from abut.problem.discretised import stacked, unit_of
 from abut.problem.finite_pairs import finite_pairs
 from abut.problem.follower_loads import FollowerLoads
-from abut.problem.free_modes import free_mode_springs
+from abut.problem.free_modes import floats_of, free_mode_springs
 from abut.problem.held_motions import HeldMotions, neutral_in
 from abut.problem.holds import Holds
 from abut.problem.kinematics import Kinematics
@@ -74,20 +74,19 @@ def assemble(
     restrained, passing = restraint(model.mesh, constraints, every), Holds.of(model)
     for helps in (sprung, passing):
         restrained = restrained if helps is None else restrained.helped_by(helps.resistance(restrained.rigid.modes))
-    neutral, settled = neutral_in(model, restrained, loaded.at_ends(model))
-    springs = free_mode_springs(
-        restrained.rigid, restrained.everything, constraints, reduced, loaded.at_ends(model), neutral, settled
-    )
-    held = HeldMotions.of(model, restrained.rigid, neutral, unit_of(reduced)) if model.finite else None
+    ends = loaded.at_ends(model)
+    neutral, settled = neutral_in(model, restrained, ends)
+    rigid, resisted = restrained.rigid, restrained.everything
+    springs = free_mode_springs(rigid, resisted, constraints, reduced, ends, neutral, settled, floats_of(model))
+    held = HeldMotions.of(model, rigid, neutral, unit_of(reduced)) if model.finite else None
     for text in springs.notes:
         note(text)
     restrained, reduced = restrained.helped_by(springs.gram), springs.added_to(reduced)
-    forces = [constraints.free.T @ force for force in loaded.at_ends(model)]
+    forces = [constraints.free.T @ force for force in ends]
     first = restrained.at(weights(model.histories, model.ends[0]))
     require_balance(first, forces[0], " in step 1" if len(forces) > 1 else "")
     require_unmoved(restrained, forces)
     _check_finite(reduced.diagonal(), loaded.forces)
-    n_free = reduced.shape[0]
     bodies = _bodies(model, loaded, backend)
     beside = [*_beside(model, constraints, loaded), *(term for term in (sprung, held, passing) if term)]
     own = _own(model, [term.name for term in (bodies, *beside)])
@@ -98,7 +97,7 @@ def assemble(
         terms=(bodies, *beside),
         constraints=constraints,
         pairs=every,
-        operator=stacked(every, n_free),
+        operator=stacked(every, reduced.shape[0]),
         restraint=restrained,
         springs=springs,
         stiffness=reduced if affine else None,
@@ -110,7 +109,7 @@ def assemble(
     for solid in model.solids:
         if solid.integration == "auto" and (how := model.integration(solid)) != "full":
             note(f"body '{solid.body}': integration = \"{how}\", as cells that keep their volume would lock otherwise")
-    note(f"{n_free} free displacements, {sum(map(len, every))} multipliers")
+    note(f"{reduced.shape[0]} free displacements, {sum(map(len, every))} multipliers")
     clock.mark("set-up")
     return Assembled(problem, bodies, loaded)
 

@@ -13,6 +13,7 @@ from scipy.sparse.csgraph import connected_components
 
 from abut.bodies.rigid_modes import RigidModes, describe, each_motion, free_motions, simple_motions
 from abut.errors import SingularModelError
+from abut.model import Frequencies, Model
 from abut.problem.constraints import Constraints
 from abut.problem.neutral_motions import Neutral, beyond
 from abut.types import Array, Sparse
@@ -63,6 +64,11 @@ class FreeModeSprings:
         return np.asarray(displacement - self.motions @ (self.motions.T @ displacement))
 
 
+def floats_of(model: Model) -> bool:
+    """Whether bodies of a model may float: its frequencies are asked for, with those of rigid motions, which are zero."""
+    return any(isinstance(wanted, Frequencies) for wanted in model.modes)
+
+
 def free_mode_springs(
     rigid: RigidModes,
     resistances: Sequence[NDArray[np.float64]],
@@ -71,13 +77,14 @@ def free_mode_springs(
     loads: Sequence[NDArray[np.float64]],
     neutral: Neutral | None = None,
     settled: Array | None = None,
+    floats: bool = False,
 ) -> FreeModeSprings:
     """Hold the rigid motions that nothing resists, where that takes no force, or none but what facets put on them.
 
     resistances: Gram matrices of supports and all contact, closed; constraints: the change of variables;
     stiffness: (n_free, n_free); loads: nodal forces (dim n_points,), at the end of each load step; neutral: motions that
     contact resists by its facets alone; settled: where bodies move far (n_modes, k) motions that loads bring to rest: there
-    something else holds the neutral ones (``held_motions``).
+    something else holds the neutral ones (``held_motions``); floats: bodies that nothing touches or loads may do so.
     Raises SingularModelError for a motion on which loads do work, and for a body that nothing touches or loads.
     """
     motions = free_motions(resistances)
@@ -91,7 +98,7 @@ def free_mode_springs(
                 f"{describe(rigid, worst, one_way=True)}{_others(modes)}: neither a support nor contact constrains it, "
                 f"and the loads act in that direction; {CURE}"
             )
-        if size == 0.0 and len(groups) == 1 and modes.shape[1] == rigid.per_group:
+        if size == 0.0 and not floats and len(groups) == 1 and modes.shape[1] == rigid.per_group:
             raise SingularModelError(
                 f"{describe(rigid, modes)}{_others(modes)}: neither a support nor contact constrains it, and no load acts "
                 f"on it; {CURE}"

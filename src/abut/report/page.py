@@ -22,6 +22,7 @@ from abut.report.contact_words import ZERO, centre, force, moment, number, on_bo
 from abut.report.describe import tables
 from abut.report.friction import HEAD, friction_history, friction_rows
 from abut.report.lines import pressure_lines
+from abut.report.modes import modes_tables
 from abut.report.motion import paths
 from abut.report.origin import Origin, comparison, ellipse
 from abut.report.preloads import HEAD as OF_PRELOADS
@@ -63,7 +64,7 @@ def page(solution: Solution, origin: Origin, beside: Beside | None = None) -> st
         "trouble": _trouble(solution),
         "probes": _probes(solution),
         "beside": "" if beside is None else _beside(beside),
-        "contacts": _contacts(solution) + _rigid(solution),
+        "contacts": "".join(_table(*t) for t in modes_tables(solution)) + _contacts(solution) + _rigid(solution),
         "bodies": _table(*largest_by_body(solution, of_bodies), _all_steps(solution)),
         "model": "".join(_table(t["head"], t["rows"], t["title"]) for t in tables(solution.model)),
         "run": _run(solution),
@@ -151,7 +152,6 @@ def _size(value: float, scale: float) -> str:
 
 
 def _reached(solution: Solution) -> str:
-    """Up to which time steps have converged, in words."""
     times = [step.factor for step in solution.steps if step.converged]
     return f", time {solution.model.solve.said(times[-1])} reached" if times else ""
 

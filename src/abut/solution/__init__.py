@@ -3,13 +3,14 @@
 from abut.solution.contacts import Check, ContactResult, FrictionResult, PressureStatistics, Resultant
 from abut.solution.energy import Energy
 from abut.solution.flow import Flow
+from abut.solution.modes import ModesResult
 from abut.solution.preloads import PreloadResult
 from abut.solution.progress import Iteration, Observer, Phase
 from abut.solution.records import Flips, OnStep, ProbeResult, RigidResult, Saved, SavedPart, Solution, Step
 from abut.solution.state import History, Largest, State
 
 __all__ = [
-    "Check", "ContactResult", "Energy", "Flips", "Flow", "FrictionResult", "History", "Iteration", "Largest", "Observer",
-    "OnStep", "Phase", "PreloadResult", "PressureStatistics", "ProbeResult", "Resultant", "RigidResult", "Saved",
-    "SavedPart", "Solution", "State", "Step",
+    "Check", "ContactResult", "Energy", "Flips", "Flow", "FrictionResult", "History", "Iteration", "Largest",
+    "ModesResult", "Observer", "OnStep", "Phase", "PreloadResult", "PressureStatistics", "ProbeResult", "Resultant",
+    "RigidResult", "Saved", "SavedPart", "Solution", "State", "Step",
 ]  # fmt: skip

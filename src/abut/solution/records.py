@@ -21,8 +21,10 @@ from abut.solution.contacts import Check, ContactResult, worst
 from abut.solution.energy import Energy
 from abut.solution.flow import Flow
 from abut.solution.idle import idle_contacts
+from abut.solution.modes import ModesResult
 from abut.solution.preloads import PreloadResult, preload_checks, weak_checks
 from abut.solution.progress import Iteration
+from abut.solution.run_checks import run_checks
 from abut.solution.state import State
 from abut.solution.stress_error import StressError
 
@@ -31,10 +33,8 @@ ROUNDED = 1e-6  # the same at most, where a stiff part that moves with a soft on
 STRAIN = 0.3  # about the largest that linear elasticity takes for small; wrong units miss it by powers of ten
 TURN, TURN_NOTICED = 0.2, 0.1  # radians: lengths are wrong by half its square, 2 % and 0.5 %
 RESPONSE = 0.5  # nothing between 0 and 1
-STABILISED = 0.05  # of the work done that drags may take
 STRESS_ERROR = 1.0  # then what elements and nodes differ by is as large as the stresses that nodes show
 STRESS_NOTICED = 0.25  # from which on recovered stresses of linear cells were seen to be off by 5 % at contact nodes
-LANDED = 0.05  # what results depend on load steps by, about
 REGULARISATION = 1e-9  # limit of the force that constrains free rigid-body modes: zero but for rounding
 
 
@@ -236,6 +236,8 @@ class Solution:
         What a deck asked for and the user left out.
     processes : int
         How many solved it together.
+    modes : tuple of ModesResult
+        What ``model.modes`` asks for, in its order; empty before the end of the run.
     """
 
     model: Model
@@ -247,6 +249,7 @@ class Solution:
     complete: bool = True
     ignored: tuple[str, ...] = ()  # what a deck asked for and the user left out
     processes: int = 1
+    modes: tuple[ModesResult, ...] = ()
 
     def __repr__(self) -> str:
         """The state of the run, the last step and the certificate, in at most ten lines."""
@@ -321,13 +324,13 @@ class Solution:
             for check in (*model, *(c for contact in step.contacts for c in contact.checks)):
                 lines.setdefault((check.contact, check.name), []).append(check)
         checks = [worst(checks) for checks in lines.values()]
-        whole = (check for check in (self._load_steps, self._stabilisation) if check is not None)
         return (
             *checks,
             *self._locking,
             *idle_contacts(self.model, [s.contacts for s in self.steps]),
             *self._apart,
-            *whole,
+            *run_checks([(step.landed, step.energy) for step in self.steps]),
+            *(check for result in self.modes for check in result.certificate),
         )
 
     @property
@@ -347,29 +350,6 @@ class Solution:
     def _apart(self) -> tuple[Check, ...]:
         """Of bodies that lie in each other, at the end of the run."""
         return tuple(bodies_apart(self.model, self.displacement)) if self.complete else ()
-
-    @property
-    def _load_steps(self) -> Check | None:
-        """How much friction depends on the load steps, over all of them; None without friction at large sliding."""
-        forces = [step.landed for step in self.steps if step.landed is not None]
-        if not forces:
-            return None
-        unsure, limit = (sum(part) for part in zip(*forces))
-        return Check("", "load steps", unsure / max(limit, 1e-300), LANDED,
-                     "friction of points that touched and stuck in one step, where they did is known roughly, over all that "
-                     "friction carries at most")  # fmt: skip
-
-    @property
-    def _stabilisation(self) -> Check | None:
-        """What drags have taken, of all work that was done; None where none led a step."""
-        energies = [step.energy for step in self.steps if step.energy is not None]
-        taken = sum(abs(energy.stabilisation) for energy in energies)
-        if taken == 0.0:
-            return None
-        work = sum(abs(energy.loads + energy.supports + energy.contact) for energy in energies)
-        return Check("", "stabilisation", taken / max(work, 1e-300), STABILISED,
-                     "energy that a drag took, where bodies jumped or hardly anything held them, over the work "
-                     "done on them")  # fmt: skip
 
     @property
     def displacement(self) -> NDArray[np.float64]:

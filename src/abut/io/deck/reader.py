@@ -12,6 +12,7 @@ from abut.io.deck.coupling_cards import couplings
 from abut.io.deck.friction_cards import friction_notes, without_tied_friction
 from abut.io.deck.interference_cards import Scene, with_interferences
 from abut.io.deck.mesh_cards import MeshCards, mesh_cards
+from abut.io.deck.mode_cards import without_modes
 from abut.io.deck.model_cards import (
     cyclic_symmetry,
     equations,
@@ -40,7 +41,9 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
     Raises InputError with card, file, line and cure for what abut does not honour and for what cannot be read."""
     notes: list[str] = []
     reasons = Reasons()
-    sifted = sift(without_tied_friction(_cards(path, notes, reasons), notes), reasons, ignore)
+    every, modes = without_modes(_cards(path, notes, reasons), ignore)
+    notes += [modes.note] if modes is not None and modes.note else []
+    sifted = sift(without_tied_friction(every, notes), reasons, ignore)
     if not sifted.plain:
         reasons.tell()
     cards = without_repeated(sifted.cards, notes)
@@ -83,6 +86,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
         thicknesses=nodal_thickness(cards, mesh, reasons),
         normals=normals(cards, mesh, reasons),
         requests=requests(sifted.requests),
+        modes=modes,
     )
     reasons.tell()
     return deck

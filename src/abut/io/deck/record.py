@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.io.deck.elements import ElementType
+from abut.io.deck.mode_cards import Modes
 from abut.io.deck.output_cards import Request
 from abut.io.deck.reasons import Place
 
@@ -323,7 +324,7 @@ class Deck:
     """A whole deck. nodes (n,) sorted; points (n, 3); sets and surfaces by name as the deck first spells it; fixed: supports
     outside the steps; initial: node -> temperature; quiet, ignored: see ``supported.Sifted``; small_sliding: a
     contact pair asks for it; thicknesses: of shells at nodes; normals: of shells at (element, node); thin: what stands for
-    the nodes of shells once they are expanded."""
+    the nodes of shells once they are expanded; modes: what the last step asks for beside."""
 
     path: str
     nodes: Numbers
@@ -354,6 +355,7 @@ class Deck:
     normals: Mapping[tuple[int, int], tuple[float, float, float]] = field(default_factory=dict)
     thin: Mapping[int, Thin] = field(default_factory=dict)
     requests: tuple[Request, ...] = ()
+    modes: Modes | None = None
 
     @property
     def references(self) -> frozenset[int]:

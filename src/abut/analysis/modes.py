@@ -1,0 +1,68 @@
+"""Frequencies and buckling loads about the state that a run ends with."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from abut.bodies.stress_stiffness import stress_stiffness
+from abut.errors import InputError
+from abut.model import Buckling, Frequencies, Model
+from abut.modes.buckling import buckling
+from abut.modes.frequencies import frequencies
+from abut.modes.held import Held, held
+from abut.nonlinear.load_step import Attempt
+from abut.problem.assembly import Assembled
+from abut.solution import ModesResult
+from abut.solution.state import State
+from abut.types import Sparse
+
+
+def check_modes(model: Model, processes: int) -> None:
+    """Raise InputError for what is asked for and cannot be found."""
+    if not model.modes:
+        return
+    if processes > 1:
+        raise InputError("modes: frequencies and buckling loads are found on one process; start one only")
+    if model.physics:
+        raise InputError("modes: frequencies and buckling loads are those of displacements alone; leave physics out")
+    if model.finite and any(isinstance(wanted, Buckling) for wanted in model.modes):
+        raise InputError(
+            f'buckling: linear buckling is about bodies at small displacements, and kinematics is "{model.kinematics}"; '
+            "with it the load steps themselves lead to the load at which the assembly gives way"
+        )
+
+
+def modes(assembled: Assembled, before: State, attempt: Attempt) -> tuple[ModesResult, ...]:
+    """All that the model asks for. before: the state that the last attempt, which converged, began with.
+
+    Raises InputError, ConvergenceError and SingularModelError."""
+    state, problem = attempt.state, assembled.problem
+    if not problem.model.modes:
+        return ()
+    own = problem.with_ordinary(attempt.inside) if attempt.inside.any() else problem
+    system = own.again(before, state)
+    near = problem.constraints.near(state.unknowns, system.factors)
+    there = held(own, system, state)
+    stressed = _stressed(assembled, state) if problem.model.small_strains else None
+
+    def one(wanted: Frequencies | Buckling) -> ModesResult:
+        if isinstance(wanted, Buckling):
+            assert stressed is not None  # as checked at the outset
+            return buckling(problem.model, near, there, stressed, wanted)
+        tight = there
+        if stressed is not None and wanted.stiffening:
+            tight = _stiffened(there, near.reduce(stressed))
+        return frequencies(problem.model, near, tight, wanted)
+
+    return tuple(map(one, problem.model.modes))
+
+
+def _stiffened(there: Held, by_stress: Sparse) -> Held:
+    return replace(there, stiffness=(there.stiffness + by_stress).tocsr()) if by_stress.nnz else there
+
+
+def _stressed(assembled: Assembled, state: State) -> Sparse:
+    """The stiffness that stresses add, over all points."""
+    problem, bodies = assembled.problem, assembled.bodies
+    motion = replace(problem.motion(state.time, problem.values(state)), history=state.history.of(bodies.name))
+    return stress_stiffness(problem.model.deformable, bodies.stress(motion))

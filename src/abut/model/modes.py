@@ -1,0 +1,79 @@
+"""What is asked for about the state at the end of the last load step: frequencies and buckling loads."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from abut.errors import InputError
+
+MOST_MODES = 10_000
+
+
+@dataclass(frozen=True)
+class Frequencies:
+    """Natural frequencies of the assembly as it is loaded at the end of the last load step.
+
+    Closed contact stays closed and what sticks sticks; what slips does so without friction along its surface; what is open
+    stays open. Supports and whatever else is prescribed are held. Every body needs the density of its material.
+
+    Parameters
+    ----------
+    count : int
+        How many, from the lowest.
+    stiffening : bool
+        Whether stresses at the end of the last step change the stiffness. With kinematics "finite" they always do.
+
+    Raises
+    ------
+    InputError
+        For values out of range.
+
+    Examples
+    --------
+    >>> import abut
+    >>> abut.Frequencies(count=20).count
+    20
+    """
+
+    count: int = 10
+    stiffening: bool = True
+
+    def __post_init__(self) -> None:
+        _check_count(self.count, "frequencies")
+        if not isinstance(self.stiffening, bool):
+            raise InputError(f"frequencies: stiffening: expected true or false, got {self.stiffening!r}")
+
+
+@dataclass(frozen=True)
+class Buckling:
+    """Linear buckling: factors of the stresses at the end of the last load step at which the assembly gives way.
+
+    Closed contact stays closed, as for ``Frequencies``. Stresses are those of all that acts together; kinematics must be
+    "small".
+
+    Parameters
+    ----------
+    count : int
+        How many positive factors, from the smallest.
+
+    Raises
+    ------
+    InputError
+        For values out of range.
+
+    Examples
+    --------
+    >>> import abut
+    >>> abut.Buckling(count=3).count
+    3
+    """
+
+    count: int = 5
+
+    def __post_init__(self) -> None:
+        _check_count(self.count, "buckling")
+
+
+def _check_count(count: object, name: str) -> None:
+    if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= MOST_MODES:
+        raise InputError(f"{name}: count: expected a whole number from 1 to {MOST_MODES}, got {count!r}")

@@ -1,0 +1,1 @@
+"""Frequencies and linear buckling of an assembly about a converged state."""

@@ -1,0 +1,104 @@
+"""Natural frequencies of an assembly about a converged state."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from abut.bodies.mass import mass
+from abut.bodies.rigid_modes import motions
+from abut.errors import InputError
+from abut.model import Frequencies, Model
+from abut.modes.factors import Factors
+from abut.modes.held import Held
+from abut.modes.spectrum import MORE, Pairs, Pencil, gap_after, largest
+from abut.problem.constraints import Constraints
+from abut.solution.modes import FREQUENCIES, ModesResult
+from abut.types import Sparse
+
+SHIFT = 1e-8  # of stiffness over mass of a cell, below zero, where bodies move freely as a whole
+ROUNDING = 64.0 * np.finfo(float).eps  # of the same: squares of frequencies that are zero
+Vector = NDArray[np.float64]
+
+
+def frequencies(model: Model, constraints: Constraints, held: Held, wanted: Frequencies) -> ModesResult:
+    """The lowest frequencies, theory (J1) to (J3). constraints: the linear change of variables near the state; held: its
+    stiffness and contact.
+
+    Raises InputError where no body has a density, ConvergenceError, and SingularModelError."""
+    whole = mass(model.mesh, densities(model))
+    reduced = constraints.reduce(whole)
+    fastest = _fastest(held.stiffness, reduced)
+    shift = -SHIFT * fastest if held.loose else 0.0
+    shifted = Factors((held.stiffness - shift * reduced).tocsr() if shift else held.stiffness, held)
+    moving = int((reduced.diagonal() > 0.0).sum())
+    pencil = Pencil(shifted.solve, reduced, reduced, reduced.shape[0], min(moving, reduced.shape[0] - len(held.give)))
+    rounding = ROUNDING * fastest
+    found, missing = _complete(pencil, held, shift, wanted.count, rounding)
+    squares, vectors = shift + 1.0 / found.values, found.vectors
+    squares = np.where(np.abs(squares) <= rounding, 0.0, squares)
+    mass_of = reduced @ vectors
+    again = np.column_stack([shifted.solve(force) for force in mass_of.T]) / found.values - vectors
+    residual = relative_energy(shifted.matrix, again, vectors)
+    products = vectors.T @ mass_of - np.eye(len(squares))
+    shapes = np.asarray(constraints.free @ vectors)
+    factors, total = _participation(model, whole, shapes)
+    return ModesResult(
+        FREQUENCIES, np.sign(squares) * np.sqrt(np.abs(squares)) / (2.0 * np.pi), squares,
+        shapes.T.reshape(len(squares), -1, model.dim), factors, factors**2, total, float(residual.max()),
+        float(np.abs(products).max()), missing,
+    )  # fmt: skip
+
+
+def relative_energy(stiffness: Sparse, change: Vector, vectors: Vector) -> Vector:
+    """(n,) roots of the energy of changes (n_free, n) over that of vectors (n_free, n)."""
+    left, whole = (np.einsum("im,im->m", x, stiffness @ x) for x in (change, vectors))
+    return np.asarray(np.sqrt(np.abs(left) / np.maximum(np.abs(whole), 1e-300)))
+
+
+def densities(model: Model) -> dict[str, float]:
+    """Of all bodies that have one. Raises InputError where none has."""
+    found = {solid.body: float(solid.material.density) for solid in model.solids}
+    if not any(found.values()):
+        raise InputError(
+            "frequencies: no body has a mass; give the materials a density, in units that go with force, length and time "
+            "(N, mm and s: tonnes per mm^3, 7.85e-9 of steel)"
+        )
+    return found
+
+
+def _fastest(stiffness: Sparse, mass: Sparse) -> float:
+    """Square of the highest angular frequency, about: of points by themselves."""
+    stiff, heavy = stiffness.diagonal(), mass.diagonal()
+    return float(np.median(stiff[heavy > 0.0] / heavy[heavy > 0.0]))
+
+
+def _complete(pencil: Pencil, held: Held, shift: float, count: int, rounding: float) -> tuple[Pairs, int | None]:
+    """The lowest ``count``, ascending, and how many are missing; where some are, once more with another start."""
+    wanted, missing = count + MORE, None
+    for seed in range(2):
+        found = largest(pencil, wanted, seed)
+        order = np.argsort(1.0 / found.values)
+        found = Pairs(found.values[order], found.vectors[:, order])
+        place = gap_after(shift + 1.0 / found.values, count, rounding)
+        if place is None:
+            break
+        below, top = place
+        known = Factors((held.stiffness - top * pencil.metric).tocsr(), held).negative
+        missing = None if known is None else max(known - below, 0)
+        if not missing:
+            break
+        wanted += missing
+    return _first(found, count), missing
+
+
+def _first(found: Pairs, count: int) -> Pairs:
+    return Pairs(found.values[:count], found.vectors[:, :count])
+
+
+def _participation(model: Model, mass: Sparse, shapes: Vector) -> tuple[Vector, Vector]:
+    """Factors (n, k) of modes (dim n_points, n) with unit motions of the whole, and its mass for these (k,)."""
+    unit = motions(model.mesh.points, model.mesh.axisymmetric).reshape(shapes.shape[0], -1)
+    moved = sp.csr_matrix(mass) @ unit
+    return np.asarray(shapes.T @ moved), np.asarray(np.einsum("ik,ik->k", unit, moved))

@@ -1,0 +1,79 @@
+"""The lowest eigenpairs of a symmetric pencil by Lanczos' method on prepared factors, and whether any are missing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse.linalg as spla
+from numpy.typing import NDArray
+
+from abut.errors import ConvergenceError
+from abut.types import Sparse
+
+MORE = 4  # eigenvalues beyond those asked for, between which a count finds a gap
+APART = 1e-5  # relative distance of eigenvalues that are two
+TOLERANCE = 1e-12  # of Ritz values
+Vector = NDArray[np.float64]
+Solve = Callable[[Vector], Vector]
+
+
+@dataclass(frozen=True)
+class Pencil:
+    """solve(left x) = t x on the directions that are free: shift and invert where ``left`` is the ``metric``, t then being
+    1 / (lambda - shift), largest by size; else the positive t, largest first. solve: x by forces; metric: symmetric, in
+    which modes are orthogonal; size: of x; free: how many directions there are."""
+
+    solve: Solve
+    left: Sparse
+    metric: Sparse
+    size: int
+    free: int
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """values: (n,) t; vectors: (size, n)."""
+
+    values: Vector
+    vectors: Vector
+
+
+def largest(pencil: Pencil, count: int, seed: int = 0) -> Pairs:
+    """The ``count`` largest t of ``pencil``, or as many as there may be. Raises ConvergenceError where iterations end."""
+    n, count = pencil.size, max(min(count, pencil.free - 1), 1)
+    start = pencil.solve(pencil.left @ np.random.default_rng(seed).standard_normal(n))
+    operator = spla.LinearOperator((n, n), matvec=lambda x: pencil.solve(np.ravel(x)), dtype=float)
+    basis = min(max(2 * count + 1, 20), n)
+    try:
+        if pencil.left is pencil.metric:
+            values, vectors = spla.eigsh(
+                pencil.left,
+                count,
+                pencil.metric,
+                sigma=0.0,
+                which="LM",
+                v0=start,
+                ncv=basis,
+                tol=TOLERANCE,
+                OPinv=operator,
+            )
+            values = 1.0 / values
+        else:
+            values, vectors = spla.eigsh(
+                pencil.left, count, pencil.metric, Minv=operator, which="LA", v0=start, ncv=basis, tol=TOLERANCE
+            )
+    except spla.ArpackError as reason:
+        raise ConvergenceError(f"modes: Lanczos' method did not converge ({reason}); ask for fewer modes") from None
+    return Pairs(values, vectors)
+
+
+def gap_after(values: Vector, count: int, rounding: float = 0.0) -> tuple[int, float] | None:
+    """How many of ascending ``values`` (n,) lie below the first gap at or after the first ``count``, and a number in that
+    gap; None where there is none. rounding: of values."""
+    for i in range(count, len(values)):
+        below, above = values[i - 1], values[i]
+        if above - below > max(APART * max(abs(above), abs(below)), 2.0 * rounding):
+            return i, float(0.5 * (below + above))
+    return None

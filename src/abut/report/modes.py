@@ -1,0 +1,41 @@
+"""Frequencies and buckling loads in the report."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from abut.solution import ModesResult, Solution
+from abut.solution.modes import FREQUENCIES
+
+MOST = 200  # rows
+PER_LINE = 10
+
+
+def modes_tables(solution: Solution) -> list[tuple[list[str], list[list[str]], str]]:
+    """Head, rows and title of each."""
+    return [_table(solution, result) for result in solution.modes]
+
+
+def mode_lines(result: ModesResult) -> list[str]:
+    """For the terminal: what was found, a few numbers a line."""
+    shown = [f"{value:.6g}" for value in result.values[:MOST]]
+    head = f"{result.kind} {'(cycles per time)' if result.kind == FREQUENCIES else '(factors)'}:"
+    rows = [", ".join(shown[i : i + PER_LINE]) for i in range(0, len(shown), PER_LINE)]
+    more = [f"and {len(result) - MOST} more, in modes.csv"] if len(result) > MOST else []
+    return [f"{head} {rows[0]}", *(f"  {row}" for row in (*rows[1:], *more))]
+
+
+def _table(solution: Solution, result: ModesResult) -> tuple[list[str], list[list[str]], str]:
+    """Of the modes of a kind, the first ones where they are many."""
+    if result.kind != FREQUENCIES:
+        rows = [[f"{i + 1}", f"{value:.6g}"] for i, value in enumerate(result.values[:MOST])]
+        return ["mode", "factor of the state's stresses"], rows, "Linear buckling about the end of the last step"
+    along = "y" if solution.model.mesh.axisymmetric else "xyz"[: solution.model.dim]
+    share = 100.0 * result.effective[:, : len(along)] / np.maximum(result.mass[: len(along)], 1e-300)
+    rows = [
+        [f"{i + 1}", f"{value:.6g}", *(f"{part:.3g} %" for part in shares)]
+        for i, (value, shares) in enumerate(zip(result.values[:MOST].tolist(), share.tolist()))
+    ]
+    rows.append([f"{len(result)} together", "", *(f"{part:.3g} %" for part in share.sum(axis=0))])
+    head = ["mode", "frequency (cycles per time)", *(f"effective mass along {a}" for a in along)]
+    return head, rows, "Natural frequencies about the end of the last step"

@@ -1,0 +1,62 @@
+"""Results about the state at the end of a run: natural frequencies and buckling loads, with their modes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.brief import brief
+from abut.solution.contacts import Check
+
+RESIDUAL = 1e-6  # frequencies are off by about its square
+ORTHOGONAL = 1e-6
+MISSING = 0.5  # nothing between 0 and 1
+FREQUENCIES, BUCKLING = "frequencies", "buckling"
+
+
+@dataclass(frozen=True)
+class ModesResult:
+    """Modes about the state at the end of the last step.
+
+    kind: "frequencies" or "buckling"; values: (n,) ascending, frequencies in cycles per time (negative where the state is
+    unstable: -sqrt(-lambda) / 2 pi), or factors of the state's stresses; eigenvalues: (n,) squares of angular frequencies,
+    or the factors; shapes: (n, n_points, dim), of frequencies with a modal mass of 1, of buckling with a largest
+    displacement of 1; participation, effective: (n, k) factors of participation and effective masses for unit motions of
+    the whole along the axes, then turns about the axes through the origin (3D: k = 6, 2D: 3, axisymmetric: 1, along the
+    axis); mass: (k,) of the whole for the same motions; none of these for buckling: k = 0. residual, orthogonality: the
+    largest over all modes, relative; missing: modes that were not found below the last one, None where that is not known.
+    """
+
+    kind: str
+    values: NDArray[np.float64]
+    eigenvalues: NDArray[np.float64]
+    shapes: NDArray[np.float64]
+    participation: NDArray[np.float64]
+    effective: NDArray[np.float64]
+    mass: NDArray[np.float64]
+    residual: float
+    orthogonality: float
+    missing: int | None
+
+    __repr__ = brief
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    @property
+    def certificate(self) -> tuple[Check, ...]:
+        """Residual, orthogonality, and modes that are missing."""
+        left = (
+            "" if self.missing is not None else "the factors of this direct solver do not tell how many modes there are"
+        )
+        return (
+            Check("", f"{self.kind}: residual", self.residual, RESIDUAL,
+                  "root of the energy that one more inverse iteration changes a mode by, over the mode's"),
+            Check("", f"{self.kind}: orthogonality", self.orthogonality, ORTHOGONAL,
+                  "largest product of two modes of size 1"),
+            Check("", f"{self.kind}: missing modes", float("nan") if left else float(self.missing or 0), MISSING,
+                  "modes below the last one that a count by Sylvester's law of inertia finds beyond those given",
+                  unknown=left),
+        )  # fmt: skip
