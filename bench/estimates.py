@@ -44,6 +44,11 @@ def blocks(cell: str, cells: int) -> abut.Model:
     return abut.Model(mesh, [abut.Solid(body, steel) for body in mesh.bodies], held, contacts=contacts)
 
 
+def finds_its_steps(model: abut.Model) -> abut.Model:
+    """The same without times of its steps."""
+    return replace(model, solve=abut.SolveOptions())
+
+
 def example(name: str) -> abut.Model:
     return load_job(ROOT / "examples" / name).model
 
@@ -65,6 +70,9 @@ MODELS: Mapping[str, Callable[[], abut.Model]] = {
     "bearing": lambda: ASSEMBLIES["bearing"]().model(),
     "o-ring": lambda: ASSEMBLIES["o-ring"]().model(),
     "flange": lambda: ASSEMBLIES["flange"]().model(),
+    "bolted joint": lambda: finds_its_steps(example("bolted-joint/job.toml")),
+    "pushed block": lambda: example("pushed-block/job.toml"),
+    "twisted hub": lambda: example("twisted-hub/job.toml"),
 }
 
 

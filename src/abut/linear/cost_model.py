@@ -21,6 +21,7 @@ from abut.mesh.mesh import Mesh
 from abut.mesh.shapes import ratios
 from abut.model import Model
 from abut.problem.pair import Pair
+from abut.problem.springs import Springs
 
 ASSEMBLY = {  # seconds a cell
     "tri3": 1.0e-6, "tri6": 2.5e-6, "quad4": 1.5e-6, "quad8": 4e-6, "quad9": 5e-6, "tet4": 1.5e-6, "tet10": 1.2e-5,
@@ -35,10 +36,11 @@ SEGMENT = {  # seconds a segment between flat facets, between curved ones, with 
     "tri6": (3e-5, 1.6e-4), "quad8": (4.5e-5, 2e-4), "quad9": (5.5e-5, 2.2e-4),
 }  # fmt: skip
 A_PAIR, A_BODY = 8e-3, 4e-4  # seconds a pair and a body, whatever their size
-RESULT = 1.0e-6  # seconds a free displacement and step: stresses, checks
+CUT = 3.0  # all of the interface (normals, gaps, checks) over cutting alone
+RESULT, RESULT_PAIR, RESULT_MULTIPLIER = 8e-6, 3.5e-2, 4e-5  # seconds a step: by free displacement, pair and multiplier
 ROW, FRONT = 5e-6, 1.5e-9  # seconds a row of the stiffness, and an operation on a front, to factorise
 ELIMINATIONS = {1: 1, 2: 2}  # of a step, by degree: on quadratic facets functions change where contact is closed
-DENSE, SOLUTION = 1.5e-10, 2e-3  # seconds a cube of the number of multipliers, and a solution, whatever their size
+DENSE, SOLUTION = 1.5e-10, 8e-3  # seconds a cube of the number of multipliers, and a solution, whatever their size
 LEVELS, CYCLE = 5e-8, 3e-9  # seconds an entry of the stiffness for setting multigrid up, and for one iteration
 FIRST, NEXT = 10, 5  # solutions of the first load step, and of one that begins where the last ended
 KRYLOV, STRETCHED = 75, 0.8  # iterations of a step between cells of equal edges; power of the ratio of edges
@@ -93,7 +95,7 @@ class Stiffness:
 @dataclass(frozen=True)
 class Effort:
     """What has to be done. cells: of each kind; multipliers, pairs, bodies, steps: how many; cutting: seconds; stretched:
-    mean ratio of the cells' edges; finite: large displacements."""
+    mean ratio of the cells' edges; finite: large displacements; changing: small ones with a stiffness that changes."""
 
     stiffness: Stiffness
     cells: dict[str, int]
@@ -104,6 +106,7 @@ class Effort:
     steps: int
     stretched: float
     finite: bool = False
+    changing: bool = False
 
 
 def of_stiffness(mesh: Mesh, displacements: int) -> Stiffness:
@@ -125,6 +128,7 @@ def effort(model: Model, displacements: int, pairs: Sequence[Pair]) -> Effort:
         cutting=sum(map(_cutting, pairs)),
         steps=typical_steps(model),
         finite=model.finite,
+        changing=not model.finite and _changes(model),
         stretched=float(np.exp(np.log(ratios(model.mesh)).mean())),
     )
 
@@ -140,6 +144,14 @@ def typical_steps(model: Model) -> int:
     )
 
 
+def _changes(model: Model) -> bool:
+    """Whether each iteration at small displacements has new factors, as materials, springs and bolts drawn by a force ask
+    (``abut.problem.assembly``)."""
+    springs = Springs.of(model)
+    drawn = any(preload.force is not None for preload in model.preloads)
+    return not model.linear_bodies or drawn or bool(model.physics) or not (springs is None or springs.constant)
+
+
 def preparing(size: Stiffness, solver: str) -> float:
     """Seconds to set a linear solver up: to factorise once ("direct"), or to make the levels of multigrid ("amg")."""
     return size.entries * LEVELS if solver == "amg" else ROW * size.displacements + FRONT * size.fronts
@@ -149,14 +161,16 @@ def seconds(effort: Effort, solver: str) -> dict[str, float]:
     """Seconds of each stage, with "direct" or "amg" as the linear solver."""
     solutions = FIRST + NEXT * (effort.steps - 1) if effort.multipliers else effort.steps
     prepared, displacements = preparing(effort.stiffness, solver), effort.stiffness.displacements
-    if effort.finite:
+    if effort.finite or effort.changing:
         anew = effort.stiffness.entries * CYCLE * KRYLOV * effort.stretched**STRETCHED if solver == "amg" else 0.0
         each = FINITE + anew + (1.0 if solver == "amg" else UNSYMMETRIC) * prepared
-        each += TANGENT * (_assembly(effort) + effort.cutting) + FOLLOWED * effort.multipliers
-        solving = ITERATIONS * effort.steps * each
+        each += (
+            TANGENT * (_assembly(effort) + (effort.cutting if effort.finite else 0.0)) + FOLLOWED * effort.multipliers
+        )
+        solving = ITERATIONS * effort.steps * each if effort.finite else solutions * (SOLUTION + each)
     elif solver == "amg":
         krylov = KRYLOV * effort.stretched**STRETCHED * (FIRST + NEXT * (effort.steps - 1)) / FIRST
-        solving = prepared + effort.stiffness.entries * CYCLE * krylov
+        solving = prepared + effort.stiffness.entries * CYCLE * krylov + solutions * SOLUTION
     else:
         degree = max(CELLS[kind].degree for kind in effort.cells)
         eliminated = effort.multipliers <= LARGEST
@@ -169,9 +183,10 @@ def seconds(effort: Effort, solver: str) -> dict[str, float]:
         )
     return {
         "assembly": START + _assembly(effort),
-        "interface": effort.cutting + A_PAIR * effort.pairs + A_BODY * effort.bodies,
+        "interface": CUT * effort.cutting + A_PAIR * effort.pairs + A_BODY * effort.bodies,
         "solve": solving,
-        "results": effort.steps * (RESULT * displacements + A_PAIR * effort.pairs),
+        "results": effort.steps
+        * (RESULT * displacements + RESULT_PAIR * effort.pairs + RESULT_MULTIPLIER * effort.multipliers),
     }
 
 
