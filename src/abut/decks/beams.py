@@ -1,7 +1,7 @@
 """Beams of a deck expanded into solids, as CalculiX does it: as shells are (``decks.thin``), with a rectangular section.
 
 A node where turns are held or prescribed, or a moment acts, is a coupling of its section: the mean motion of its corners (at
-large displacements a rigid one)."""
+large displacements, where turns are held, a rigid one)."""
 
 from __future__ import annotations
 
@@ -84,15 +84,19 @@ def _with_solids(deck: Deck, blocks: list[Block], solid: Sections, finite: bool)
         ),
     )
     new = renamed(new, {node: np.unique(np.concatenate(n)[np.concatenate(n) >= 0]) for node, n in made.items()}, {})
-    turned = _turned(deck)
+    held, turned = _turned(deck, ("boundary",)), _turned(deck, ("boundary", "force"))
     place = blocks[0].place
-    bound = [_coupling(node, nodes, finite, place) for node, nodes in made.items() if len(nodes) > 1 or node in turned]
+    bound = [
+        _coupling(node, nodes, finite and node in held, place)
+        for node, nodes in made.items()
+        if len(nodes) > 1 or node in turned
+    ]
     coupled = {coupling.reference for coupling in bound}
     thin = {node: Thin(tuple(nodes[0][:4].tolist())) for node, nodes in made.items() if node not in coupled}
     straight = [
         Equation(((int(nodes[0][e]), k, 2.0), (int(nodes[0][a]), k, -1.0), (int(nodes[0][b]), k, -1.0)), place)
         for coupling in bound
-        if coupling.distributing and (nodes := made[coupling.reference])
+        if coupling.distributing and coupling.reference in held and (nodes := made[coupling.reference])
         for e, a, b in EDGES
         if nodes[0][e] >= 0
         for k in (1, 2, 3)
@@ -105,20 +109,17 @@ def _with_solids(deck: Deck, blocks: list[Block], solid: Sections, finite: bool)
     )
 
 
-def _coupling(node: int, nodes: list[Numbers], finite: bool, place: Place) -> Coupling:
-    """One section at small displacements by its mean; several, or one that turns far, as a rigid body."""
-    mean = len(nodes) == 1 and not finite
+def _coupling(node: int, nodes: list[Numbers], rigid: bool, place: Place) -> Coupling:
+    """One section by its mean; several, or one whose turns are held at large displacements, as a rigid body."""
+    mean = len(nodes) == 1 and not rigid
     every = np.sort(nodes[0][:4]) if mean else np.unique(np.concatenate(nodes)[np.concatenate(nodes) >= 0])
     name = f"section {node}" if mean else f"knot {node}"
     return Coupling(name, mean, node, "", every, frozenset(range(1, 7)), None, place)
 
 
-def _turned(deck: Deck) -> set[int]:
-    """Nodes with supports in turns, or moments."""
+def _turned(deck: Deck, kinds: tuple[str, ...]) -> set[int]:
+    """Nodes with supports in turns ("boundary"), or moments ("force")."""
     every = [*deck.fixed, *(value for step in deck.steps for value in step.values)]
     return {
-        node
-        for value in every
-        if value.kind in ("boundary", "force") and max(value.directions) > 3
-        for node in value.numbers.tolist()
+        node for value in every if value.kind in kinds and max(value.directions) > 3 for node in value.numbers.tolist()
     }
