@@ -189,7 +189,7 @@ def test_refused(text: str, words: str, tmp_path: Path) -> None:
 
 
 def test_meshes_of_shells_alone(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="S8R: shells are read with the whole deck only"):
+    with pytest.raises(InputError, match="S8R: shells and beams are read with the whole deck only"):
         Mesh.read(write(tmp_path, strip()))
 
 

@@ -11,7 +11,6 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.decks.shell_edges import quadratic
 from abut.io.deck.reasons import DeckError
 from abut.io.deck.record import Block, Coupling, Deck, Faces, Numbers, Prescribed, Section, Thin
 from abut.mesh.thin.shells import Expanded, Shell, expand
@@ -19,19 +18,13 @@ from abut.mesh.thin.shells import Expanded, Shell, expand
 Vector = NDArray[np.float64]
 
 
-def is_thin(deck: Deck) -> bool:
-    """Whether the deck has shells."""
-    return any(block.type.thin for block in deck.blocks)
-
-
-def thickened(deck: Deck, finite: bool) -> Deck:
-    """The deck with its shells expanded. ``finite``: at large displacements.
+def with_thick_shells(deck: Deck, finite: bool) -> Deck:
+    """The deck with its shells, of quadratic elements, expanded. ``finite``: at large displacements.
 
     Raises InputError for shells without a thickness or with cells that have no area, and for springs on their nodes."""
-    if not is_thin(deck):
+    blocks = [block for block in deck.blocks if block.type.thin == "shell"]
+    if not blocks:
         return deck
-    deck = quadratic(deck)
-    blocks = [block for block in deck.blocks if block.type.thin]
     shells = [
         Shell(
             block.type.kind,
@@ -71,14 +64,14 @@ def _with_solids(deck: Deck, blocks: list[Block], solid: Expanded, finite: bool)
         deck,
         nodes=np.concatenate([deck.nodes, number[used]]),
         points=np.concatenate([deck.points, solid.points[used]]),
-        blocks=tuple(next(made) if block.type.thin else block for block in deck.blocks),
+        blocks=tuple(next(made) if block.type.thin == "shell" else block for block in deck.blocks),
         thin={node: each for node, each in thin.items() if node not in knots},
     )
     at = np.einsum(
         "nd,nd->n", solid.points - np.repeat(deck.points[solid.node], 3, axis=0), np.repeat(solid.normal, 3, axis=0)
     )
     heights = dict(zip(number.tolist(), at.tolist()))
-    deck = _renamed(deck, stand_for, heights)
+    deck = renamed(deck, stand_for, heights)
     couplings = [_knot(deck, blocks[0], node, stand_for[node]) for node in knots]
     return replace(deck, couplings=(*deck.couplings, *couplings))
 
@@ -167,7 +160,7 @@ def _check_turned(deck: Deck, thin: Mapping[int, Thin]) -> None:
                 )
 
 
-def _renamed(deck: Deck, stand_for: Mapping[int, Numbers], heights: Mapping[int, float]) -> Deck:
+def renamed(deck: Deck, stand_for: Mapping[int, Numbers], heights: Mapping[int, float]) -> Deck:
     """The deck with nodes of solids in sets and surfaces of nodes, rigid bodies, couplings and temperatures. heights: along
     the normal over the shell's nodes."""
     shells = np.array(sorted(stand_for), np.int64)
@@ -186,14 +179,20 @@ def _renamed(deck: Deck, stand_for: Mapping[int, Numbers], heights: Mapping[int,
             return [value]
         if not value.vector[0]:
             return [replace(value, numbers=all_of(value.numbers))]
-        return [_warm(value, n, heights.get(n, 0.0)) for n in all_of(value.numbers).tolist()]
+        for node in [n for n in all_of(value.numbers).tolist() if n not in heights][:1]:
+            raise DeckError(
+                value.place, f"*TEMPERATURE: node {node} has a gradient, and belongs to no shell; take it out"
+            )
+        return [_warm(value, n, heights[n]) for n in all_of(value.numbers).tolist()]
 
     def of_surface(surface: Faces) -> Faces:
         return surface if surface.nodes is None else replace(surface, nodes=all_of(surface.nodes))
 
     for spring in deck.springs:
         if np.isin(spring.ends, shells).any():
-            raise DeckError(spring.place, "*SPRING: springs on nodes of shells are not supported; use nodes of solids")
+            raise DeckError(
+                spring.place, "*SPRING: springs on nodes of shells and beams are not supported; use nodes of solids"
+            )
     initial = dict(deck.initial)
     for node, nodes in stand_for.items():
         if node in initial:

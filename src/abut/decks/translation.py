@@ -16,6 +16,7 @@ from abut.decks.body_loads import body_loads
 from abut.decks.clearance import bilateral_note, gap_options
 from abut.decks.couplings import couplings, reference_loads, reference_nodes, unlisted_notes
 from abut.decks.elastic import elastic_law
+from abut.decks.expanded import expanded
 from abut.decks.friction import friction_options, path_notes
 from abut.decks.holds import holds
 from abut.decks.large import finite_notes, is_finite, load_steps, plastic_steps, unsupported, yields
@@ -28,7 +29,6 @@ from abut.decks.rigid import join, rigid_bodies, with_parts_coupled
 from abut.decks.rubber import of_rubber
 from abut.decks.springs import spring_notes, springs
 from abut.decks.temperatures import history, temperatures
-from abut.decks.thin import thickened
 from abut.detection import add_surfaces, find_contacts
 from abut.errors import InputError
 from abut.io.deck import read_deck
@@ -107,9 +107,8 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     for error in unsupported(deck):
         reasons.add(error)
     plane = plane_of(deck)
-    reasons.tell()
     notes = [f"{block.code}: {block.type.instead}" for block in deck.blocks if block.type.instead]
-    deck = cut(thickened(deck, is_finite(deck)))
+    deck = cut(expanded(deck, is_finite(deck)))
     notes = [*deck.notes, *notes, *overclosure_notes(deck, soft), *finite_notes(deck), *spring_notes(deck)]
     made = pieces(deck)
     deck = with_parts_coupled(deck, made, notes)
@@ -154,12 +153,14 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
         plane=plane,
         kinematics="finite" if finite else "small",
         modes=modes(deck),
-        solve=replace(
-            load_steps(deck) if finite else plastic_steps(deck) if yields(deck) else _options(deck), end=period(deck)
-        ),
+        solve=replace(_steps(deck, finite), end=period(deck)),
     )
     model, output = with_tables(model, deck, asked, notes), output_options(model, deck, notes)
     return Translation(model, tuple(notes), deck.ignored, laws, output)
+
+
+def _steps(deck: Deck, finite: bool) -> SolveOptions:
+    return load_steps(deck) if finite else plastic_steps(deck) if yields(deck) else _options(deck)
 
 
 def _referenced(

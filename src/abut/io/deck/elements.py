@@ -13,8 +13,8 @@ class ElementType:
     """kind: the cell (``abut.cells``); plane: "strain", "stress", "axisymmetric", or None in 3D; integration as in
     ``abut.Solid``, measured on single and few elements of CalculiX 2.20: its C3D8, CPE4 and CAX4 are fully integrated,
     its C3D10, C3D15 and triangles with 6 nodes have 4, 9 and 3 points. instead: what abut takes in place of the
-    element's own formulation, "" where it is the same. thin: "shell", a cell of a surface that a thickness makes solid, or
-    ""."""
+    element's own formulation, "" where it is the same. thin: "shell" or "beam", a cell of a surface or line that its
+    section makes solid, or ""."""
 
     kind: str
     plane: str | None
@@ -28,7 +28,14 @@ class ElementType:
         return _EXPANDED[self.kind] if self.thin else self.kind
 
 
-_EXPANDED = {"tri3": "wedge15", "tri6": "wedge15", "quad4": "hex20", "quad8": "hex20"}
+_EXPANDED = {
+    "line2": "hex20",
+    "line3": "hex20",
+    "tri3": "wedge15",
+    "tri6": "wedge15",
+    "quad4": "hex20",
+    "quad8": "hex20",
+}
 
 
 _HOURGLASS = "instead of one point with hourglass control; stiffer in bending"
@@ -76,7 +83,7 @@ def _types() -> dict[str, ElementType]:
         result |= {f"{prefix}{code}": ElementType("quad4", plane, *_MEAN) for code in ("4H", "4RH", "4IH")}
         result |= {f"{prefix}{code}": ElementType("quad8", plane, *_POINTS) for code in ("8H", "8RH")}
         result |= {f"{prefix}{code}": ElementType("tri6", plane, *_POINTS) for code in ("6H", "6MH")}
-    return result | _shells()
+    return result | _shells() | _beams()
 
 
 def _shells() -> dict[str, ElementType]:
@@ -90,6 +97,17 @@ def _shells() -> dict[str, ElementType]:
         "S6": ElementType("tri6", None, "reduced", "", "shell"),
         "S8": ElementType("quad8", None, "full", "", "shell"),
         "S8R": ElementType("quad8", None, "reduced", "", "shell"),
+    }
+
+
+def _beams() -> dict[str, ElementType]:
+    """B32 becomes C3D20, B32R C3D20R; linear ones likewise get a node in their middle."""
+    middle = "a node in its middle, expanded to C3D20R instead of {}; less stiff in bending"
+    return {
+        "B31": ElementType("line2", None, "reduced", middle.format("C3D8I"), "beam"),
+        "B31R": ElementType("line2", None, "reduced", middle.format("C3D8R"), "beam"),
+        "B32": ElementType("line3", None, "full", "", "beam"),
+        "B32R": ElementType("line3", None, "reduced", "", "beam"),
     }
 
 

@@ -142,7 +142,7 @@ def mesh_cards(cards: Iterable[Card], notes: list[str], reasons: Reasons) -> Mes
         _named(surfaces),
         frozenset(nodes),
         kinds,
-        frozenset(number for number, (code, _) in elements.items() if ELEMENTS[code].thin),
+        frozenset(number for number, (code, _) in elements.items() if ELEMENTS[code].thin == "shell"),
         virtual,
     )
 
@@ -280,7 +280,7 @@ def _surface(
         if line.text(1):
             label = line.text(1).upper()
             types = [ELEMENTS[elements[e][0]] for e in members.tolist()]
-            label = SIDES.get(label, label) if all(t.thin for t in types) else label
+            label = SIDES.get(label, label) if all(t.thin == "shell" for t in types) else label
             face = face_number(line, label, "S", {t.solid for t in types})
         faces.append((members, face))
     return Faces(name, card.place, tuple(faces))

@@ -98,14 +98,13 @@ def _density(card: Card) -> float:
 def sections(
     cards: Sequence[Card], mesh: MeshCards, known: Mapping[str, Material] | None, reasons: Reasons
 ) -> tuple[Section, ...]:
-    """Solid and shell sections, without materials where ``known`` is None; later ones override earlier ones for elements
-    that stand in both, as in Abaqus and CalculiX."""
+    """Sections of solids, shells and beams, without materials where ``known`` is None; later ones override earlier ones for
+    elements that stand in both, as in Abaqus and CalculiX."""
     result: list[Section] = []
     axes = {name.upper(): card for card in of(cards, "ORIENTATION") if (name := card.get("NAME"))}
-    for card in (card for card in cards if card.key in ("SOLIDSECTION", "SHELLSECTION")):
+    for card in (card for card in cards if card.key in _SECTIONS):
         with reasons.gathered():
-            read = shell_section if card.key == "SHELLSECTION" else _section
-            section = read(card, mesh, known, axes)
+            section = _SECTIONS[card.key](card, mesh, known, axes)
             result = [replace(s, elements=np.setdiff1d(s.elements, section.elements)) for s in result]
             result.append(section)
     return tuple(s for s in result if len(s.elements))
@@ -120,7 +119,7 @@ def _section(card: Card, mesh: MeshCards, known: Mapping[str, Material] | None, 
     return _of_elements(card, mesh, known, axes, thickness)
 
 
-def shell_section(
+def _shell_section(
     card: Card, mesh: MeshCards, known: Mapping[str, Material] | None, axes: Mapping[str, Card]
 ) -> Section:
     """One *SHELL SECTION. Raises InputError for a thickness that is none, and for layers."""
@@ -138,6 +137,35 @@ def shell_section(
     if offset is None:
         raise card.error(f"OFFSET={text}: expected a number (over the thickness), SPOS or SNEG")
     return replace(_of_elements(card, mesh, known, axes, thickness), offset=offset)
+
+
+def _beam_section(
+    card: Card, mesh: MeshCards, known: Mapping[str, Material] | None, axes: Mapping[str, Card]
+) -> Section:
+    """One *BEAM SECTION. Raises InputError for other sections than rectangles, and for widths that are none."""
+    if key(card.get("SECTION", "RECT") or "") != "RECT":
+        raise card.error(
+            f"SECTION={card.get('SECTION')}: only rectangles (RECT) are supported; model the part with solids"
+        )
+    line = card.first("widths")
+    first = line.number(0, "width")
+    widths = (first, line.number(1, "second width", first))
+    if not min(widths) > 0.0:
+        raise line.error(f"width: expected a number > 0, got {min(widths):g}")
+    axis = (0.0, 0.0, -1.0)
+    if len(card.lines) > 1 and any(card.lines[1].fields):
+        x, y, z = (card.lines[1].number(i, "component of the first direction", 0.0) for i in range(3))
+        if x == y == z == 0.0:
+            raise card.lines[1].error("the first direction has no length; give three components")
+        axis = (x, y, z)
+    offsets = []
+    for name in ("OFFSET1", "OFFSET2"):
+        value = as_float(card.get(name) or "0")
+        if value is None:
+            raise card.error(f"{name}={card.get(name)}: expected a number (over the width)")
+        offsets.append(value)
+    section = _of_elements(card, mesh, known, axes, 0.0)
+    return replace(section, widths=widths, axis=axis, offsets=(offsets[0], offsets[1]))
 
 
 def _of_elements(
@@ -163,6 +191,9 @@ def _axes(card: Card, material: Material, known: Mapping[str, Card]) -> Orientat
     if name.upper() not in known:
         raise card.unknown(f"no orientation named {name!r}{nearest(name.upper(), known)}")
     return orientation(known[name.upper()])
+
+
+_SECTIONS = {"SOLIDSECTION": _section, "SHELLSECTION": _shell_section, "BEAMSECTION": _beam_section}
 
 
 def equations(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[Equation, ...]:

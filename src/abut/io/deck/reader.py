@@ -31,7 +31,7 @@ from abut.io.deck.spring_cards import springs
 from abut.io.deck.step_cards import KIND, amplitudes, initial_temperature, prescribed, split_steps, steps
 from abut.io.deck.supported import NEEDED, opens, sift
 
-ALONE = "shells are read with the whole deck only; run the deck itself, or give job files a mesh of solids"
+ALONE = "shells and beams are read with the whole deck only; run the deck itself, or give job files a mesh of solids"
 MESH = ("NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "SOLIDSECTION")
 
 

@@ -112,7 +112,8 @@ class Material:
 class Section:
     """name: the element set; thickness: of plane elements and shells, 0 of shells whose nodes have
     one each; orientation: None for the global axes; offset: of a
-    shell, its nodes from the mid-surface along the normal over the thickness."""
+    shell, its nodes from the mid-surface along the normal over the thickness. Of a beam: widths along the first
+    direction, near ``axis``, and the second, and its nodes from the centre over these."""
 
     name: str
     elements: Numbers
@@ -121,6 +122,9 @@ class Section:
     place: Place
     orientation: Orientation | None = None
     offset: float = 0.0
+    widths: tuple[float, float] = (0.0, 0.0)
+    axis: tuple[float, float, float] = (0.0, 0.0, -1.0)
+    offsets: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True)

@@ -36,6 +36,7 @@ READ: dict[str, tuple[str, ...]] = {
     "DENSITY": (),
     "EXPANSION": ("TYPE", "ZERO"),
     "ORIENTATION": ("NAME", "SYSTEM", "DEFINITION", "LOCAL DIRECTIONS"),
+    "BEAM SECTION": ("ELSET", "MATERIAL", "ORIENTATION", "SECTION", "OFFSET1", "OFFSET2"),
     "NODAL THICKNESS": (),
     "NORMAL": (),
     "SHELL SECTION": ("ELSET", "MATERIAL", "ORIENTATION", "OFFSET", "NODAL THICKNESS", "COMPOSITE"),
@@ -118,7 +119,6 @@ _MATERIAL = "; abut's solids are linear elastic, plastic or, with NLGEOM, neo-Ho
 _RUBBER = "this kind of rubber elasticity is not supported; fit MOONEY-RIVLIN, YEOH, OGDEN or ARRUDA-BOYCE"
 _WRITE = "; have the preprocessor write out every node and element"
 REFUSED: dict[str, str] = {
-    "BEAM SECTION": "beams are not supported; model the part with solid elements",
     "CFLUX": "heat flux belongs to heat transfer, which abut does not solve",
     "CHANGE CONTACT TYPE": "contact that changes between steps is not supported; make a deck for each state",
     "CHANGE MATERIAL": "materials that change between steps are not supported; make a deck for each state",
@@ -176,7 +176,7 @@ GENERATED = {  # nodes and elements that do not stand in the deck, or under numb
 }
 NEEDED = {  # leaving these out would leave no deck
     *GENERATED,
-    *(key(name) for name in ("BEAM SECTION", "MEMBRANE SECTION")),
+    key("MEMBRANE SECTION"),
 }
 
 POINT_ELEMENTS = ("DCOUP2D", "DCOUP3D")  # the reference nodes of *DISTRIBUTING COUPLING

@@ -1,0 +1,125 @@
+"""Beams of a deck expanded into solids, as CalculiX does it: as shells are (``decks.thin``), with a rectangular section.
+
+A node where turns are held or prescribed, or a moment acts, is a coupling of its section: the mean motion of its corners (at
+large displacements, where turns are held, a rigid one)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from abut.decks.thin import renamed
+from abut.io.deck.reasons import DeckError, Place
+from abut.io.deck.record import Block, Coupling, Deck, Equation, Numbers, Section, Thin
+from abut.mesh.thin.beams import COUNT, Beam, Sections, expand_beams
+
+EDGES = ((4, 0, 1), (5, 1, 2), (6, 2, 3), (7, 3, 0))  # of a section: the middle of a side, and its corners
+
+
+def with_thick_beams(deck: Deck, finite: bool) -> Deck:
+    """The deck with its beams expanded, its shells already are. ``finite``: at large displacements.
+
+    Raises InputError for beams without a section or a length, and for nodes that shells have as well."""
+    blocks = [block for block in deck.blocks if block.type.thin == "beam"]
+    if not blocks:
+        return deck
+    rows = np.concatenate([np.searchsorted(deck.nodes, _ordered(block)) for block in blocks])
+    sections = [section for block in blocks for section in _sections(deck, block)]
+    beam = Beam(
+        rows,
+        np.array([section.axis for section in sections]),
+        np.array([section.widths for section in sections]),
+        np.array([section.offsets for section in sections]),
+    )
+    try:
+        solid = expand_beams(deck.points, beam)
+    except ValueError as error:
+        number = np.concatenate([block.ids for block in blocks])[error.args[0]]
+        raise DeckError(
+            blocks[0].place, f"*ELEMENT: beam {number} has no length, or lies along the first direction of its section"
+        ) from None
+    return _with_solids(deck, blocks, solid, finite)
+
+
+def _ordered(block: Block) -> Numbers:
+    """Nodes (n, 3) at start, end and middle of each element; decks list the middle second where it is theirs."""
+    return block.nodes if block.code.startswith("B31") else block.nodes[:, [0, 2, 1]]
+
+
+def _sections(deck: Deck, block: Block) -> list[Section]:
+    by_number = {number: section for section in deck.sections for number in section.elements.tolist()}
+    for number in block.ids.tolist():
+        if number not in by_number or not by_number[number].widths[0]:
+            raise DeckError(block.place, f"*ELEMENT: element {number} without *BEAM SECTION; give its set a section")
+    return [by_number[number] for number in block.ids.tolist()]
+
+
+def _with_solids(deck: Deck, blocks: list[Block], solid: Sections, finite: bool) -> Deck:
+    used = np.unique(solid.cells)
+    taken = [int(deck.nodes.max()), *deck.references, *(section.node for section in deck.pretension)]
+    number = np.full(len(solid.points), -1, np.int64)
+    number[used] = max(taken) + 1 + np.arange(len(used))
+    cells = iter(np.split(number[solid.cells], np.cumsum([len(block.ids) for block in blocks])[:-1]))
+    made: dict[
+        int, list[Numbers]
+    ] = {}  # node -> the eight nodes of each of its sections, -1 for those that are not there
+    for i, point in enumerate(solid.node.tolist()):
+        made.setdefault(int(deck.nodes[point]), []).append(number[COUNT * i : COUNT * (i + 1)])
+    for node in made:
+        if node in deck.thin or any(bound.reference == node for bound in deck.couplings):
+            raise DeckError(
+                blocks[0].place,
+                f"*ELEMENT: node {node} belongs to a beam and a shell, or is a reference; join them by *TIE",
+            )
+    new = replace(
+        deck,
+        nodes=np.concatenate([deck.nodes, number[used]]),
+        points=np.concatenate([deck.points, solid.points[used]]),
+        blocks=tuple(
+            replace(block, type=replace(block.type, kind="hex20", thin=""), nodes=next(cells))
+            if block.type.thin == "beam"
+            else block
+            for block in deck.blocks
+        ),
+    )
+    new = renamed(new, {node: np.unique(np.concatenate(n)[np.concatenate(n) >= 0]) for node, n in made.items()}, {})
+    held, turned = _turned(deck, ("boundary",)), _turned(deck, ("boundary", "force"))
+    place = blocks[0].place
+    bound = [
+        _coupling(node, nodes, finite and node in held, place)
+        for node, nodes in made.items()
+        if len(nodes) > 1 or node in turned
+    ]
+    coupled = {coupling.reference for coupling in bound}
+    thin = {node: Thin(tuple(nodes[0][:4].tolist())) for node, nodes in made.items() if node not in coupled}
+    straight = [
+        Equation(((int(nodes[0][e]), k, 2.0), (int(nodes[0][a]), k, -1.0), (int(nodes[0][b]), k, -1.0)), place)
+        for coupling in bound
+        if coupling.distributing and coupling.reference in held and (nodes := made[coupling.reference])
+        for e, a, b in EDGES
+        if nodes[0][e] >= 0
+        for k in (1, 2, 3)
+    ]
+    return replace(
+        new,
+        thin={**deck.thin, **thin},
+        couplings=(*new.couplings, *bound),
+        equations=(*deck.equations, *straight),
+    )
+
+
+def _coupling(node: int, nodes: list[Numbers], rigid: bool, place: Place) -> Coupling:
+    """One section by its mean; several, or one whose turns are held at large displacements, as a rigid body."""
+    mean = len(nodes) == 1 and not rigid
+    every = np.sort(nodes[0][:4]) if mean else np.unique(np.concatenate(nodes)[np.concatenate(nodes) >= 0])
+    name = f"section {node}" if mean else f"knot {node}"
+    return Coupling(name, mean, node, "", every, frozenset(range(1, 7)), None, place)
+
+
+def _turned(deck: Deck, kinds: tuple[str, ...]) -> set[int]:
+    """Nodes with supports in turns ("boundary"), or moments ("force")."""
+    every = [*deck.fixed, *(value for step in deck.steps for value in step.values)]
+    return {
+        node for value in every if value.kind in kinds and max(value.directions) > 3 for node in value.numbers.tolist()
+    }

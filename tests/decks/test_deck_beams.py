@@ -1,0 +1,101 @@
+"""Beams of decks, expanded: those of the textbook, and CalculiX's displacements."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import abut
+from abut.errors import InputError
+from models.decks import load, solve, step, write
+
+CCX = shutil.which("ccx")
+LENGTH, WIDE, HIGH, E = 10.0, 0.4, 0.25, 1e7  # WIDE along the first direction, y; HIGH along the second, z
+SECTION = f"RECT\n{WIDE}, {HIGH}\n0., 1., 0.\n"
+
+
+def beam(code: str, count: int = 8, section: str = SECTION, nu: float = 0.0, more: str = "", turn: float = 0.0) -> str:
+    """Along x from the origin, node 1, to its free end, the last node; turned about z."""
+    middles = code.startswith("B32")
+    nodes = count * (2 if middles else 1) + 1
+    along = np.array([np.cos(turn), np.sin(turn), 0.0])
+    lines = ["*NODE, NSET=ALL"]
+    lines += [f"{i + 1}, {', '.join(f'{x:.15g}' for x in LENGTH * i / (nodes - 1) * along)}" for i in range(nodes)]
+    lines.append(f"*ELEMENT, TYPE={code}, ELSET=EALL")
+    reach = 2 if middles else 1
+    lines += [f"{k + 1}, {', '.join(str(reach * k + 1 + i) for i in range(reach + 1))}" for k in range(count)]
+    lines += [f"*NSET, NSET=END\n{nodes}", f"*BOUNDARY\n1, 1, 6\n*MATERIAL, NAME=M\n*ELASTIC\n{E}, {nu}\n*DENSITY\n1."]
+    return "\n".join(lines) + f"\n*BEAM SECTION, ELSET=EALL, MATERIAL=M, SECTION={section}{more}"
+
+
+def end(solution: abut.Solution) -> NDArray[np.float64]:
+    """Mean displacement of the corners of the free end."""
+    x = solution.model.mesh.points[:, 0]
+    at = np.flatnonzero(x > LENGTH - 1e-9)
+    corners = np.abs(solution.model.mesh.points[at, 1:]).min(axis=1) > 1e-9
+    return np.asarray(solution.displacement[at[corners]].mean(axis=0))
+
+
+@pytest.mark.parametrize("code", ["B31", "B31R", "B32", "B32R"])
+def test_cantilever(code: str, tmp_path: Path) -> None:
+    """P L^3 / 3 E I along both directions of the section, and L / E A along the beam; shear adds (h / L)^2 and less, forces
+    at corners of the last section stretch it by a tenth of its width more."""
+    solution = solve(tmp_path, beam(code) + step("*CLOAD", "END, 1, 1.", "END, 2, 1.", "END, 3, 1."))
+    flat, upright = HIGH * WIDE**3 / 12, WIDE * HIGH**3 / 12
+    wanted = [LENGTH / (E * WIDE * HIGH), LENGTH**3 / (3 * E * flat), LENGTH**3 / (3 * E * upright)]
+    assert end(solution)[1:] == pytest.approx(wanted[1:], rel=0.01)
+    assert end(solution)[0] == pytest.approx(wanted[0], rel=0.02)
+
+
+@pytest.mark.parametrize(
+    "given", [("*BOUNDARY", "END, 5, 5, 0.01"), ("*CLOAD", f"END, 5, {0.01 * E * WIDE * HIGH**3 / 12 / LENGTH}")]
+)
+def test_end_turned(given: tuple[str, str], tmp_path: Path) -> None:
+    """By an angle, or the moment E I angle / L: a parabola, to -angle L / 2."""
+    solution = solve(tmp_path, beam("B32R") + step(*given))
+    assert end(solution)[2] == pytest.approx(-0.01 * LENGTH / 2, rel=2e-3)
+
+
+def test_offset_and_gravity(tmp_path: Path) -> None:
+    """The section lies beside its nodes; gravity acts on its volume."""
+    text = beam("B32", section=SECTION.replace("RECT", "RECT, OFFSET1=0.5"))
+    solution = solve(tmp_path, text + step("*DLOAD", "EALL, GRAV, 3., 0., 0., -1."))
+    y = solution.model.mesh.points[:, 1]
+    assert (y.min(), y.max()) == pytest.approx((-WIDE, 0.0), abs=1e-12)
+    x = solution.model.mesh.points[:, 0]
+    weight, upright = 3.0 * WIDE * HIGH, WIDE * HIGH**3 / 12
+    assert solution.displacement[x > LENGTH - 1e-9, 2].mean() == pytest.approx(
+        -weight * LENGTH**4 / (8 * E * upright), rel=0.01
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (beam("B32", section="CIRC\n.1\n0.,1.,0.\n"), "SECTION=CIRC: only rectangles"),
+        (beam("B32", section="RECT\n.1, 0.\n0.,1.,0.\n"), "width: expected a number > 0, got 0"),
+        (beam("B32", section="RECT\n.1, .1\n1.,0.,0.\n"), "beam 1 has no length, or lies along the first direction"),
+        (beam("B32").partition("*BEAM")[0], r"element 1 without \*BEAM SECTION"),
+    ],
+)
+def test_refused(text: str, words: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=words):
+        load(tmp_path, text + step("*CLOAD", "END, 3, 1."))
+
+
+@pytest.mark.skipif(CCX is None, reason="CalculiX is not installed")
+@pytest.mark.parametrize("code", ["B32", "B32R"])
+def test_as_calculix(code: str, tmp_path: Path) -> None:
+    """Clamped, a force aslant and a moment at its end."""
+    text = beam(code, nu=0.3) + step("*CLOAD", "END, 2, 1.", "END, 3, 2.", "END, 5, 3.", "*NODE PRINT, NSET=END", "U")
+    path = write(tmp_path, text)
+    solution = solve(tmp_path, text)
+    subprocess.run(["ccx", "-i", path.stem], cwd=tmp_path, check=True, capture_output=True)
+    row = next(r for line in path.with_suffix(".dat").read_text().splitlines() if (r := line.split()) and r[0] == "17")
+    wanted = np.array(row[1:4], dtype=float)
+    assert end(solution) == pytest.approx(wanted, abs=0.002 * np.abs(wanted).max())
