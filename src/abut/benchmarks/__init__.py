@@ -22,6 +22,7 @@ from abut.benchmarks import (
     friction_statics,
     hertz,
     incompressible,
+    loads,
     onset,
     patch,
     plastic,
@@ -61,5 +62,6 @@ BENCHMARKS: dict[str, Benchmark] = {
         *finite_edges.BENCHMARKS,
         *finite_stacks.BENCHMARKS,
         *preloads.BENCHMARKS,
+        *loads.BENCHMARKS,
     )
 }
