@@ -76,7 +76,7 @@ inline bool convex(const Point2 *p, int n) {
   return true;
 }
 
-constexpr double ON_LINE = 1e-14; // of an edge's length, some roundings: what is nearer to its line lies on it
+constexpr double ON_LINE = 1e-12; // of an edge's length, some roundings: what is nearer to its line lies on it
 
 // Part of a convex polygon on the left of the line from a to b; the edge along it is `edge` of `side`
 // (Sutherland-Hodgman, with the origin of each edge kept). An edge of the polygon on the line stays that edge: rounding

@@ -72,7 +72,12 @@ struct Sight3 {
   void find_shapes(const Facet &t) { c.facet.values(own.xi, nc), t.values(other.xi, nt); }
 };
 
-// Moves vertices where two curves cross on to both; false for a polygon without area.
+// Where a fan of triangles begins. Clipping begins where rounding lets it, on an edge of two facets alike: the
+// diagonals, and with them the points of integration, must not jump. No direction along which edges of grids lie.
+constexpr Point2 FIRST{0.85, 0.53};
+
+// Moves vertices where two curves cross on to both, and begins with the one that is farthest back along FIRST; false
+// for a polygon without area.
 inline bool finish(const Over &over, Polygon &polygon, double scale) {
   if (polygon.size < 3)
     return false;
@@ -85,6 +90,9 @@ inline bool finish(const Over &over, Polygon &polygon, double scale) {
       polish(*in, *out, v.p);
     corner[i] = v.p;
   }
+  const auto back = [](const Vertex &a, const Vertex &b) { return dot2(a.p, FIRST) < dot2(b.p, FIRST); };
+  const auto begin = polygon.v.begin(), end = begin + polygon.size;
+  std::rotate(begin, std::min_element(begin, end, back), end);
   return !(std::abs(signed_area(corner, polygon.size)) < 1e-15 * scale);
 }
 

@@ -117,8 +117,8 @@ class Pace:
             self._length, self._curve, self._goes_on = self._fresh(), math.inf, False
             return
         if self._follows:
-            free = first or onset.sticks <= 0.0
-            self._curve = math.inf if free else self._rounded(self._factor(onset) * taken)
+            slides = onset.sticks <= 0.0 and math.isinf(self._next(onset))  # all of it, and no longer turns
+            self._curve = math.inf if first or slides else self._rounded(self._factor(onset) * taken)
         steps = self._settings
         hard = iterations > 2 * steps.easy
         factor = steps.growth if iterations <= steps.easy else steps.shrink if hard else 1.0
