@@ -17,12 +17,12 @@ from abut.solution.state import State
 from abut.types import Sparse
 
 
-def check_modes(model: Model, processes: int) -> None:
-    """Raise InputError for what is asked for and cannot be found."""
+def check_modes(model: Model, team: bool) -> None:
+    """Raise InputError for what is asked for and cannot be found. team: whether processes, or PETSc on one, solve it."""
     if not model.modes:
         return
-    if processes > 1:
-        raise InputError("modes: frequencies and buckling loads are found on one process; start one only")
+    if team:
+        raise InputError("modes: frequencies and buckling loads are found on one process without PETSc (solve.linear)")
     if model.physics:
         raise InputError("modes: frequencies and buckling loads are those of displacements alone; leave physics out")
     if model.finite and any(isinstance(wanted, Buckling) for wanted in model.modes):

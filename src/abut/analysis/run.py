@@ -85,7 +85,7 @@ class Run:
     ) -> Run:  # fmt: skip
         """Set a run up. Raises InputError and SingularModelError for a model that cannot be solved."""
         told, clock, deadline = Told(observe), Clock(), Deadline(model.solve.seconds)
-        check_modes(model, 1 if team is None else team.size)
+        check_modes(model, team is not None)
         places = find_places(model)
         for text in (*choices(model.contacts), *(text for place in places for text in place.notes)):
             told.note(text)
