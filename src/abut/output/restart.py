@@ -22,7 +22,7 @@ from abut.solution import History, Iteration, Largest, Saved, SavedPart, State
 from abut.solution.state import CLOSED, OPEN, SLIPPING, ContactHistory
 
 FOLDER = "restart"
-SCHEMA = 4  # of the files
+SCHEMA = 5  # of the files
 ARRAYS = ("unknowns", "multipliers", "status")  # of the state
 HISTORY, CONTACT, DRAG = "history.", "contact.", "drag"  # what the names of the other ones begin with, or are
 FIELDS = ("slips", "inner", "following", "fit")  # of a contact's history
