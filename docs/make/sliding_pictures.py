@@ -1,4 +1,4 @@
-"""Pictures of large sliding in docs/gallery.md: a strip, an O-ring, a snap joint, a clamp, two gears (a minute; needs matplotlib)."""
+"""Pictures of sliding in docs/gallery.md: a strip, an O-ring, a snap joint, a clamp, two gears (needs matplotlib)."""
 
 from __future__ import annotations
 
