@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from abut.model.conditions import weights
 from abut.report.chart import Chart
+from abut.report.times import time_at
 from abut.solution import Solution
 
 Vector = NDArray[np.float64]
@@ -19,7 +20,8 @@ def paths(solution: Solution) -> list[Chart]:
     """Of all supports and rigid bodies that are moved, from the state without loads on; none of a single step."""
     if len(solution.steps) < 2:
         return []
-    return [_path(title, label, times, x, y) for title, label, times, x, y in (*_supports(solution), *_rigid(solution))]
+    curves = (*_supports(solution), *_rigid(solution))
+    return [_path(title, label, time_at(solution.model, at), x, y) for title, label, at, x, y in curves]
 
 
 Curve = tuple[str, str, Vector, Vector, Vector]  # title, label of the axis, times, motion, force

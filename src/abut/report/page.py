@@ -31,6 +31,7 @@ from abut.report.probes import charts, probe_table
 from abut.report.quantities import extremes, largest_by_body
 from abut.report.scene import scene
 from abut.report.still import still_page
+from abut.report.times import time_at, time_label
 from abut.solution import ContactResult, Solution
 from abut.types import Json
 
@@ -341,7 +342,8 @@ def _history(solution: Solution) -> Json:
     names = [contact.name for contact in solution.contacts]
     each = [[step.contacts[i] for step in solution.steps] for i in range(len(names))]
     return {
-        "factor": _plain(step.factor for step in solution.steps),
+        "time": _plain(time_at(solution.model, [step.factor for step in solution.steps]).tolist()),
+        "label": time_label(solution.model),
         "contacts": [
             {
                 "name": name,

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from abut.probing.table import columns, peaks
 from abut.report.chart import Chart
 from abut.report.describe import Table
+from abut.report.times import time_at, time_label
 from abut.solution import ProbeResult, Solution
 
 UNITS = {"displacement": "length", "stress": "force/length²", "pressure": "force/length²", "gap": "length"}
@@ -23,7 +24,6 @@ CHARTS = (  # quantities of one chart: its title, its quantities
     ("pressure", ("pressure", "gap")),
 )
 PLANE = ("stress_yz", "stress_zx", "plastic_strain_yz", "plastic_strain_zx")  # zero in two dimensions
-OVER_TIME = "time (share of the load, where no amplitude says otherwise)"
 NO_GAP = 1e-9  # of a gap, over the length of the line
 PEAK = "value farthest from zero"  # of reactions: the sum
 
@@ -57,7 +57,8 @@ def charts(solution: Solution) -> list[Chart]:
             table = {n: v for n, v in columns(last).items() if n != "gap" or len(last.values) == 1 or _opens(v, x)}
             when = " in the last step" if len(results) > 1 else ""
         elif len(results) > 1:
-            x, label = np.array([step.factor for step in solution.steps]), OVER_TIME
+            x = time_at(solution.model, [step.factor for step in solution.steps])
+            label = time_label(solution.model)
             table, when = _over_time(results), f", {PEAK}" if len(last.points) > 1 else ""
         else:
             continue

@@ -18,6 +18,7 @@ from abut.report.friction import arrow_nodes, arrow_normals, at_arrows, friction
 from abut.report.inside import tetrahedra
 from abut.report.quantities import Extremes, contact_ranges, extremes, of_nodes, of_stress, peak_steps
 from abut.report.surface_triangles import Patch, Skin, patch, skin
+from abut.report.times import time_at
 from abut.solution import ContactResult, Solution, Step
 from abut.solution.grids import vectors
 from abut.types import Array, Json
@@ -169,7 +170,7 @@ def _fields(model: Model, step: Step, skins: list[Skin], sides: list[tuple[int, 
                 "displacement": on_grid(vectors(step.displacement[nodes])),
             }
         contacts.append(values)
-    return {"number": step.number, "factor": step.factor, "bodies": bodies, "contacts": contacts}
+    return {"number": step.number, "time": float(time_at(model, step.factor)), "bodies": bodies, "contacts": contacts}
 
 
 def _own(grid: Patch, values: NDArray[np.float64]) -> NDArray[np.float64]:

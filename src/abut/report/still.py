@@ -22,7 +22,6 @@ PLAIN = (0.8, 0.83, 0.85)
 INK = (0.25, 0.28, 0.32)
 CORNER = np.array([0.6, -1.0, 0.55])  # towards the eye
 COLOURS = ("accent", "second", "third", "good", "bad", "soft")
-TIME = "time (share of the load, where no amplitude says otherwise)"
 MAPS = {
     "pressure": ("1b0c41", "4a0c6b", "781c6d", "a52c60", "cf4446", "ed6925", "fb9b06", "f7d13d", "fcffa4"),
     "von Mises": ("30123b", "4145ab", "4675ed", "39a2fc", "1bcfd4", "24eca6", "61fc6c", "a4fc3b", "d1e834", "f3c63a",
@@ -61,7 +60,7 @@ def _pictures(scene: Json) -> list[str]:
     values = np.concatenate([value.ravel() for _, value in corners])
     limits = (0.0, float(np.nanmax(values))) if np.isfinite(values).any() else (0.0, 1.0)
     towards = CORNER if scene["dim"] == 3 else np.array([0.0, 0.0, 1.0])
-    when = f"step {step['number']}, time {step['factor']:.4g}; true scale"
+    when = f"step {step['number']}, time {step['time']:.4g}; true scale"
     shown = [_figure(corners, lines, towards, "von Mises", limits, f"von Mises stress of the bodies, {when}")]
     for side, own in sides:
         if side["role"] == "contactor":
@@ -163,12 +162,12 @@ def _chart(chart: Json) -> str:
 
 
 def _history(history: Json) -> list[str]:
-    factor, contacts = history["factor"], history["contacts"]
-    if len(factor) < 2 or not contacts:
+    times, label, contacts = history["time"], history["label"], history["contacts"]
+    if len(times) < 2 or not contacts:
         return []
     shown = [
         plot(
-            title, TIME, factor, [Series(c["name"], c[key], COLOURS[i % len(COLOURS)]) for i, c in enumerate(contacts)]
+            title, label, times, [Series(c["name"], c[key], COLOURS[i % len(COLOURS)]) for i, c in enumerate(contacts)]
         )
         for key, title in (("force", "Contact force"), ("area", "Contact area"), ("pressure", "Largest pressure"))
     ]
@@ -181,10 +180,10 @@ def _history(history: Json) -> list[str]:
         areas = [Series("sticking", own["sticking"]), Series("slipping", own["slipping"], "second")]
         shown += [
             plot(
-                f"{c['name']}: friction force by area", TIME, factor, [Series("friction force", own["force"]), *limit]
+                f"{c['name']}: friction force by area", label, times, [Series("friction force", own["force"]), *limit]
             ),
-            plot(f"{c['name']}: work of friction", TIME, factor, [Series("work in all", own["work"])]),
-            plot(f"{c['name']}: area", TIME, factor, areas),
+            plot(f"{c['name']}: work of friction", label, times, [Series("work in all", own["work"])]),
+            plot(f"{c['name']}: area", label, times, areas),
         ]
     return shown
 

@@ -156,23 +156,23 @@ function drawPlots(data) {
     ...(run.slipping.length ? [{ label: "slipping", values: run.slipping, colour: "third" }] : []),
   ], whole);
   const history = at("history");
-  if (data.history.factor.length > 1) {
+  if (data.history.time.length > 1) {
     for (const [key, title] of [["force", "Contact force (resultant)"], ["by_area", "Contact force by area"], ["area", "Contact area"], ["pressure", "Largest pressure"]]) {
       if (!data.history.contacts.length) break;
-      plot(history, title, "time (share of the load, where no amplitude says otherwise)", data.history.factor,
+      plot(history, title, data.history.label, data.history.time,
         data.history.contacts.map((c, i) => ({ label: c.name, values: c[key], colour: colours[i % colours.length] })));
     }
-    for (const c of data.history.contacts.filter((own) => own.friction)) drawFriction(history, data.history.factor, c);
+    for (const c of data.history.contacts.filter((own) => own.friction)) drawFriction(history, data.history.label, data.history.time, c);
   }
 }
 
 // Over the steps: force of friction by area with what it can be at most, and its work with the slipping area.
-function drawFriction(parent, factor, contact) {
-  const own = contact.friction, time = "time (share of the load, where no amplitude says otherwise)";
+function drawFriction(parent, label, times, contact) {
+  const own = contact.friction;
   const limit = own.limit.some((v) => v != null) ? [{ label: "at most", values: own.limit, colour: "second", dash: [6, 5] }] : [];
-  plot(parent, `${contact.name}: friction force by area`, time, factor, [{ label: "friction force", values: own.force, colour: "accent" }, ...limit]);
-  plot(parent, `${contact.name}: work of friction`, time, factor, [{ label: "work in all", values: own.work, colour: "accent" }]);
-  plot(parent, `${contact.name}: area`, time, factor, [
+  plot(parent, `${contact.name}: friction force by area`, label, times, [{ label: "friction force", values: own.force, colour: "accent" }, ...limit]);
+  plot(parent, `${contact.name}: work of friction`, label, times, [{ label: "work in all", values: own.work, colour: "accent" }]);
+  plot(parent, `${contact.name}: area`, label, times, [
     { label: "sticking", values: own.sticking, colour: "accent" },
     { label: "slipping", values: own.slipping, colour: "second" },
   ]);

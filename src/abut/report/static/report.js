@@ -97,7 +97,7 @@
     showBar();
     if (scene.steps.length > 1) {
       const title = heading("");
-      const name = () => { title.textContent = `Step ${view.step.number}, time ${short(view.step.factor)}`; };
+      const name = () => { title.textContent = `Step ${view.step.number}, time ${short(view.step.time)}`; };
       const go = (i) => { s.step = i; name(); view.apply(); };
       const input = slider(scene.steps.length, s.step, (i) => { player.pause(); go(i); });
       const player = playing(scene.steps.length, () => s.step, (i) => { input.value = i; go(i); });
