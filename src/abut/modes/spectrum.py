@@ -14,7 +14,7 @@ from abut.types import Sparse
 
 MORE = 4  # eigenvalues beyond those asked for, between which a count finds a gap
 APART = 1e-5  # relative distance of eigenvalues that are two
-TOLERANCE = 1e-12  # of Ritz values
+TOLERANCE = 1e-10  # of Ritz values; modes then to about as much, frequencies better
 Vector = NDArray[np.float64]
 Solve = Callable[[Vector], Vector]
 
