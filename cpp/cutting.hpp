@@ -72,13 +72,25 @@ struct Sight3 {
   void find_shapes(const Facet &t) { c.facet.values(own.xi, nc), t.values(other.xi, nt); }
 };
 
-// Where a fan of triangles begins. Clipping begins where rounding lets it, on an edge of two facets alike: the
-// diagonals, and with them the points of integration, must not jump. No direction along which edges of grids lie.
-constexpr Point2 FIRST{0.85, 0.53};
+// Twice its area.
+inline double scale_of(const Piece &piece) {
+  double scale = 0;
+  for (int i = 0; i < piece.size; ++i)
+    scale += std::abs(cross2(piece.p[i] - piece.p[0], piece.p[(i + 1) % piece.size] - piece.p[0]));
+  return scale;
+}
 
-// Moves vertices where two curves cross on to both, and begins with the one that is farthest back along FIRST; false
-// for a polygon without area.
-inline bool finish(const Over &over, Polygon &polygon, double scale) {
+// Where a fan of triangles begins. Clipping begins where rounding lets it, on an edge that two facets share, and the
+// diagonals, and with them the points of integration, must not jump: the vertex farthest back in a direction that turns
+// with the contactor's piece, and along which no edges of grids lie.
+inline Point2 first_direction(const Piece &piece) {
+  const Point2 along = piece.p[1] - piece.p[0];
+  return {0.85 * along.x - 0.53 * along.y, 0.85 * along.y + 0.53 * along.x};
+}
+
+// Moves vertices where two curves cross on to both, and begins a part of the contactor's piece `mine` where fans begin;
+// false for a polygon without area.
+inline bool finish(const Over &over, Polygon &polygon, const Piece &mine) {
   if (polygon.size < 3)
     return false;
   Point2 corner[MAX_CLIP];
@@ -90,17 +102,11 @@ inline bool finish(const Over &over, Polygon &polygon, double scale) {
       polish(*in, *out, v.p);
     corner[i] = v.p;
   }
-  const auto back = [](const Vertex &a, const Vertex &b) { return dot2(a.p, FIRST) < dot2(b.p, FIRST); };
+  const Point2 ahead = first_direction(mine);
+  const auto back = [&](const Vertex &a, const Vertex &b) { return dot2(a.p, ahead) < dot2(b.p, ahead); };
   const auto begin = polygon.v.begin(), end = begin + polygon.size;
   std::rotate(begin, std::min_element(begin, end, back), end);
-  return !(std::abs(signed_area(corner, polygon.size)) < 1e-15 * scale);
-}
-
-inline double scale_of(const Piece &piece) {
-  double scale = 0;
-  for (int i = 0; i < piece.size; ++i)
-    scale += std::abs(cross2(piece.p[i] - piece.p[0], piece.p[(i + 1) % piece.size] - piece.p[0]));
-  return scale;
+  return !(std::abs(signed_area(corner, polygon.size)) < 1e-15 * scale_of(mine));
 }
 
 inline void cut_pieces(const Over &over, const Facet &t, Segment own, Reach reach, std::vector<Segment> &out) {
@@ -110,7 +116,7 @@ inline void cut_pieces(const Over &over, const Facet &t, Segment own, Reach reac
     subject.push({mine.p[i], own.mine, i});
   own.polygon = clip_convex(subject, theirs.p, theirs.size, own.theirs);
   own.finished = own.polygon;
-  if (!finish(over, own.finished, scale_of(mine)))
+  if (!finish(over, own.finished, mine))
     return;
   over.c.facet.centre(own.xi), t.centre(own.eta);
   Sight3 at(over.c, own.xi, own.eta);
@@ -162,7 +168,8 @@ void each_part(const Over &over, const Segment &own, const std::vector<Segment> 
     visit(own.finished);
     return;
   }
-  const double scale = scale_of(over.piece(own.mine)), least = TOUCHING * scale;
+  const Piece &mine = over.piece(own.mine);
+  const double least = TOUCHING * scale_of(mine);
   std::vector<Polygon> left{own.polygon}, next;
   for (int nearer : own.behind) {
     next.clear();
@@ -171,7 +178,7 @@ void each_part(const Over &over, const Segment &own, const std::vector<Segment> 
     left.swap(next);
   }
   for (Polygon &part : left)
-    if (finish(over, part, scale))
+    if (finish(over, part, mine))
       visit(part);
 }
 
