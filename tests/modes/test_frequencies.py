@@ -94,13 +94,15 @@ def test_plates_that_slide_are_half_as_stiff_as_bonded_ones(kinematics: str):
 
 @pytest.mark.parametrize("kind", ["contact", "tied"])
 def test_pinned_plates_slide_or_bend_as_one(kind: str):
-    """Half a sine wave: of each plate by itself, pinned at its own middle, 293.166 Hz, or of both as one of twice the height,
-    pinned at the interface, 586.333 Hz; Timoshenko's shear and rotary inertia lower them by .09 % and .35 %."""
+    """Half a sine wave: of each plate by itself, pinned at its own middle, 293.166 Hz, or of both as one of twice the
+    height, pinned at the interface, 586.333 Hz; Timoshenko's shear and rotary inertia lower them by .09 % and .35 %."""
     model = stacked(kind, "small")
     points = model.mesh.points
     height, pins = (HEIGHT, [HEIGHT / 2, 3 * HEIGHT / 2]) if kind == "contact" else (2 * HEIGHT, [HEIGHT])
     pinned = np.isclose(points[:, 1, None], pins).any(axis=1)
-    sets = {name: np.flatnonzero(pinned & np.isclose(points[:, 0], x)) for name, x in (("here", 0.0), ("there", LENGTH))}
+    sets = {
+        name: np.flatnonzero(pinned & np.isclose(points[:, 0], x)) for name, x in (("here", 0.0), ("there", LENGTH))
+    }
     model = replace(
         model,
         mesh=replace(model.mesh, node_sets=sets),
