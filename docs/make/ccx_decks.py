@@ -50,6 +50,10 @@ REMARKS = {
     "fricloop": "one facet on another, pressed in the first step: friction at its four corners, where abut has it, holds it "
     "from widening more than friction all over it; see below",
     "friction1": "as cubespring",
+    "friction2": "in the first step, as fricloop: one facet slips outwards all round. CalculiX's friction is a force "
+    "at each corner (so it is with dual-P1: 6.22568e-5 both); abut's traction varies over the facet, and "
+    "a third of that is left at the corners (8.26830e-5); 0.001 % in the three steps after, in which it "
+    "slides",
     "punch1": "a round punch, three facets wide: pressure up to the edge of facets whose neighbours are open; refined below",
     "punch2": "as punch1",
     "scheibe2n2f": "node to surface; nothing varies along z, but CalculiX's displacements differ by 3 % between z = 0 and "

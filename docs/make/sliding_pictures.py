@@ -1,4 +1,4 @@
-"""Pictures of large sliding in docs/gallery.md: a strip, an O-ring, a snap joint, two gears (a minute; needs matplotlib)."""
+"""Pictures of sliding in docs/gallery.md: a strip, an O-ring, a snap joint, a clamp, two gears (needs matplotlib)."""
 
 from __future__ import annotations
 
@@ -66,6 +66,24 @@ def snap_curve(solution: abut.Solution) -> None:
     figure.savefig(DOCS / "pictures" / "snap-joint-force.png", dpi=150)
 
 
+def clamp_curve(solution: abut.Solution) -> None:
+    """Friction of the pad and what it can be at most, over the time; lines where steps end."""
+    figure, axes = plots().subplots(figsize=(6.0, 2.8), constrained_layout=True)
+    ends = {"tighten": 1.0, "pull": 2.0, "let go": 3.0}
+    times = [0.0, *(step.factor * max(ends.values()) for step in solution.steps)]
+    own = [step.contacts[0] for step in solution.steps]
+    axes.plot(times, [0.0, *(contact.force[0] for contact in own)], ".-", label="friction")
+    axes.plot(times, [0.0, *(contact.friction.force_limit for contact in own)], "--", color="0.5", label="its limit")
+    for name, end in ends.items():
+        axes.axvline(end, color="0.85", lw=0.8)
+        axes.text(end - 0.5, 3.75, name, ha="center", color="0.4")
+    axes.set_ylim(0.0, 4.1)
+    axes.set_xlabel("time")
+    axes.set_ylabel("force [N/mm]")
+    axes.legend(frameon=False, loc="center right")
+    figure.savefig(DOCS / "pictures" / "clamped-strip-force.png", dpi=150)
+
+
 def example(name: str) -> abut.Solution:
     return abut.solve(load_job(DOCS.parent / "examples" / name / "job.toml").model)
 
@@ -77,6 +95,7 @@ def main() -> None:
     peak = max(snap.steps, key=lambda step: -step.contacts[0].force[0]).factor
     series("snap-joint.png", snap, (peak, 0.45, 0.7, 1.0), 0.01, (0.0, 13.5, -2.5, 3.0), rows=2)
     snap_curve(snap)
+    clamp_curve(example("clamped-strip"))
     gears = abut.solve(BENCHMARKS["gears"].model(0))
     series("gears.png", gears, (0.1, 0.55, 1.0), 0.1, (22.0, 68.0, -24.0, 24.0))
 

@@ -7,6 +7,7 @@ import pytest
 
 import abut
 from abut.analysis.static import solve
+from abut.benchmarks import BENCHMARKS, run
 from abut.mesh import make
 from abut.problem.holds import HELD
 
@@ -92,3 +93,9 @@ def test_what_is_no_hold(given: dict[str, object], words: str) -> None:
 def test_places_are_checked() -> None:
     with pytest.raises(abut.InputError, match=r"holds\[0\].on: no surface, node set or body named 'bar.topp'"):
         bar(abut.Hold("bar.topp", z=0.0))
+
+
+def test_stretched_loaded_let_go_and_locked() -> None:
+    """The benchmark `holds`: displacement and force at every time are those of a spring E A / L."""
+    for outcome in run(BENCHMARKS["holds"]):
+        assert outcome.passed, outcome

@@ -21,6 +21,7 @@ from abut.benchmarks import (
     friction_balls,
     friction_statics,
     hertz,
+    holds,
     incompressible,
     loads,
     onset,
@@ -63,5 +64,6 @@ BENCHMARKS: dict[str, Benchmark] = {
         *finite_stacks.BENCHMARKS,
         *preloads.BENCHMARKS,
         *loads.BENCHMARKS,
+        *holds.BENCHMARKS,
     )
 }
