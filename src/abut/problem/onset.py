@@ -30,9 +30,10 @@ class Most:
 @dataclass(frozen=True)
 class Onset:
     """Of a step, forces by area: fresh: of friction at points that stick at its beginning and slip at its end, and by how
-    much that of others which slip turns; bent: what the straight line from its beginning to its end misses of the tractions
-    where contact slips, beside what follows from the pressure; sticks: of friction at points that stick at its end; limit:
-    what friction carries at most. ahead: how many times as long the next step may be if tractions go on as in this one."""
+    much that of others which slip turns; turns: the latter alone; bent: what the straight line from its beginning to its
+    end misses of the tractions where contact slips, beside what follows from the pressure; sticks: of friction at points
+    that stick at its end; limit: what friction carries at most. ahead: how many times as long the next step may be if
+    tractions go on as in this one."""
 
     fresh: float = 0.0
     turns: float = 0.0
