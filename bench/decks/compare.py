@@ -1,9 +1,9 @@
 """abut and CalculiX on the same deck, node by node.
 
 python bench/decks/compare.py [NAME ...] [--folder FOLDER] [--small] prints a line for each contact deck of CalculiX's own
-tests (Debian: apt install calculix-ccx calculix-ccx-test), or those named, which may also be of metal that yields or of
-rubber (the cards in ``MATERIALS``). With --small displacements are small in both, else as the deck
-says.
+tests (Debian: apt install calculix-ccx calculix-ccx-test), or those named, which need no contact. Shells, beams and trusses
+are compared at their own nodes: the mean of the solids' nodes there. With --small displacements are small in both, else as
+the deck says.
 """
 
 from __future__ import annotations
@@ -19,17 +19,18 @@ from pathlib import Path
 import numpy as np
 from cards import Card, plain, read
 from frd import Displacements
+from numpy.typing import NDArray
 
 import abut
+from abut.decks.expanded import expanded
+from abut.decks.large import is_finite
 from abut.decks.translation import translate
 from abut.errors import AbutError, ConvergenceError, InputError
 from abut.io.deck import read_deck
+from abut.io.deck.record import Deck, Thin
 from abut.io.deck.time_histories import ends
 from reference import EXAMPLES, PROCEDURES, TYPES, NoReference, Reference, decks, difference, reference
 
-MATERIALS = (
-    "PLASTIC", "HYPERELASTIC", "HYPERFOAM", "CREEP", "DEFORMATION PLASTICITY", "USER MATERIAL", "VISCO",
-)  # fmt: skip
 AGREES = 0.01  # largest difference of displacement over the largest displacement
 # What abut may be told to ignore here, because the reference run leaves it out too.
 IGNORABLE = (
@@ -70,9 +71,9 @@ def cells(cards: Sequence[Card]) -> str:
 
 def _numbers(kind: str) -> int:
     """Element number and nodes."""
-    if kind.startswith(("SPRING", "B31")):
+    if kind.startswith(("SPRING", "B31", "T3D2")):
         return 1 + 2
-    if kind.startswith("B32"):
+    if kind.startswith(("B32", "T3D3")):
         return 1 + 3
     return 1 + int(re.findall(r"\d+", kind)[-1])
 
@@ -86,8 +87,8 @@ def compare(name: str, path: Path, limit: float = 600.0, large: bool = True) -> 
 
 def _compare(name: str, path: Path, what: str, limit: float, large: bool) -> Outcome:
     try:
-        model, at, numbers, ignored = _model(path, large)
-        steps = _solved(model, at, numbers)
+        model, at, nodes, ignored = _model(path, large)
+        steps = _solved(model, at, nodes)
     except AbutError as error:
         refused = isinstance(error, InputError)
         return Outcome(name, what, "refused" if refused else "failed", detail=_reason(str(error), path))
@@ -111,7 +112,7 @@ def _compare(name: str, path: Path, what: str, limit: float, large: bool) -> Out
     others = _by_slaves(model)
     if best.status == "differs" and others is not None:
         found = next(r for r in references if r.kind == best.kind)
-        best = replace(best, slave=difference(found.steps, _solved(others, at, numbers)))
+        best = replace(best, slave=difference(found.steps, _solved(others, at, nodes)))
     if best.status == "differs" and len(references) == 2:
         own = difference(references[0].steps, references[1].steps)
         return replace(best, detail=f"CalculiX's two kinds of contact differ by {own:.1%} from each other")
@@ -125,9 +126,9 @@ def _reason(message: str, path: Path) -> str:
     return ", ".join(line.replace(f"{path}:", "line ").partition(";")[0] for line in kept)
 
 
-def _model(path: Path, large: bool) -> tuple[abut.Model, list[float], np.ndarray, tuple[str, ...]]:
-    """A deck as a model, the ends of its steps, the numbers of its nodes, and what abut was told to ignore: NLGEOM, where it
-    stands, unless ``large``, as in the reference run."""
+def _model(path: Path, large: bool) -> tuple[abut.Model, list[float], dict[int, Mean], tuple[str, ...]]:
+    """A deck as a model, the ends of its steps, the rows of points of each of its nodes, and what abut was told to ignore:
+    NLGEOM, where it stands, unless ``large``, as in the reference run."""
     stands = re.search(r"^\*STEP.*NLGEOM", path.read_text(encoding="latin-1"), re.IGNORECASE | re.MULTILINE)
     ignored: list[str] = ["NLGEOM"] if stands and not large else []
     first: InputError | None = None
@@ -144,8 +145,23 @@ def _model(path: Path, large: bool) -> tuple[abut.Model, list[float], np.ndarray
                 raise
             first = first or error
             ignored += asked
-    numbers = np.intersect1d(deck.nodes, np.concatenate([block.nodes.ravel() for block in deck.blocks]))
-    return model, list(ends(deck)), numbers, tuple(ignored)
+    return model, list(ends(deck)), _rows(deck), tuple(ignored)
+
+
+Mean = tuple[list[int], NDArray[np.float64]]  # rows of points, and their weights
+
+
+def _rows(deck: Deck) -> dict[int, Mean]:
+    """The points of the model at each node of a deck; at one of a shell or a beam those whose mean its displacement is."""
+    solid = expanded(deck, is_finite(deck))
+    numbers = np.unique(np.concatenate([block.nodes.ravel() for block in solid.blocks]))
+    numbers = numbers[np.isin(numbers, solid.nodes)]
+    made = {b.reference: Thin(tuple(b.nodes.tolist())) for b in solid.couplings if b not in deck.couplings} | solid.thin
+    every = {node: Thin((node,)) for node in np.intersect1d(numbers, deck.nodes).tolist()} | made
+    return {
+        node: (np.searchsorted(numbers, thin.nodes).tolist(), np.array([weight for _, weight in thin.shares]))
+        for node, thin in every.items()
+    }
 
 
 def _by_slaves(model: abut.Model) -> abut.Model | None:
@@ -162,7 +178,7 @@ def _by_slaves(model: abut.Model) -> abut.Model | None:
         return None
 
 
-def _solved(model: abut.Model, at: Sequence[float], numbers: np.ndarray) -> list[Displacements]:
+def _solved(model: abut.Model, at: Sequence[float], nodes: dict[int, Mean]) -> list[Displacements]:
     """Displacements at the end of each step of a deck."""
     solution = abut.solve(model)
     if not solution.converged:
@@ -172,7 +188,9 @@ def _solved(model: abut.Model, at: Sequence[float], numbers: np.ndarray) -> list
         step = min(solution.steps, key=lambda step: abs(step.factor - time))
         u = np.zeros((len(step.displacement), 3))
         u[:, : model.dim] = step.displacement
-        result.append(dict(zip(numbers.tolist(), u)))  # a cut bolt has more points, at the end
+        result.append(
+            {node: weights @ u[rows] for node, (rows, weights) in nodes.items()}
+        )  # a cut bolt has more points, at the end
     return result
 
 
@@ -187,7 +205,7 @@ def main() -> None:
     parser.add_argument("--limit", type=float, default=600.0, help="seconds for one run of CalculiX")
     parser.add_argument("--small", action="store_true", help="small displacements, where the deck has NLGEOM, too")
     arguments = parser.parse_args()
-    found = decks(arguments.folder, ("CONTACT PAIR", *(MATERIALS if arguments.names else ())))
+    found = decks(arguments.folder, ("ELEMENT",) if arguments.names else ("CONTACT PAIR",))
     for name in arguments.names or found:
         print(line(compare(name, found[name], arguments.limit, not arguments.small)), flush=True)
 

@@ -41,7 +41,7 @@ PROCEDURES = (
     "FREQUENCY", "DYNAMIC", "MODAL DYNAMIC", "HEAT TRANSFER", "COUPLED TEMPERATURE-DISPLACEMENT",
     "UNCOUPLED TEMPERATURE-DISPLACEMENT", "STEADY STATE DYNAMICS", "BUCKLE", "COMPLEX FREQUENCY",
 )  # fmt: skip
-PLANE = ("CPS", "CPE", "CAX")
+EXPANDED = ("CPS", "CPE", "CAX", "S3", "S4", "S6", "S8", "B3", "T3D")  # whose own nodes "OUTPUT=2D" has
 
 
 class NoReference(Exception):
@@ -108,7 +108,7 @@ def difference(one: Sequence[Displacements], other: Sequence[Displacements]) -> 
 
 def edit(cards: Sequence[Card], stiffness: float, ignore: Collection[str] = (), kind: str = "") -> list[Card]:
     """The deck for a reference run."""
-    plane = any(c.name == "ELEMENT" and c.options.get("TYPE", "").upper().startswith(PLANE) for c in cards)
+    own = any(c.name == "ELEMENT" and c.options.get("TYPE", "").upper().startswith(EXPANDED) for c in cards)
     model, steps = _split(cards)
     result: list[Card] = []
     tied = False
@@ -145,7 +145,7 @@ def edit(cards: Sequence[Card], stiffness: float, ignore: Collection[str] = (), 
             elif card.name == "END STEP":
                 # the last increment of a step is written whatever the frequency
                 frequency = {"FREQUENCY": "999999"}
-                result.append(Card("NODE FILE", {**frequency, "OUTPUT": "2D"} if plane else frequency, ("U",)))
+                result.append(Card("NODE FILE", {**frequency, "OUTPUT": "2D"} if own else frequency, ("U",)))
             result.append(card.without(*ignore))
     return result
 
@@ -167,7 +167,7 @@ def _young(cards: Sequence[Card]) -> float:
 def _size(cards: Sequence[Card]) -> float:
     """Typical size of an element: of the box around all nodes, shared among the elements."""
     rows = [line.split(",") for card in cards if card.name == "NODE" for line in card.data]
-    extent = np.ptp(np.array([[float(x or 0.0) for x in (*row[1:4], "0", "0")[:3]] for row in rows]), axis=0)
+    extent = np.ptp(np.array([[float(x.strip() or 0.0) for x in (*row[1:4], "0", "0")[:3]] for row in rows]), axis=0)
     extent = extent[extent > 1e-9 * extent.max()]
     count = sum(len(card.data) for card in cards if card.name == "ELEMENT")
     return float((np.prod(extent) / count) ** (1 / len(extent)))

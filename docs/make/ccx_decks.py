@@ -43,6 +43,8 @@ REMARKS = {
     "beamcontact": "a coarse beam turns about the edges of two narrow stops: the pressure stands on a part of a facet; "
     "refined below",
     "changesurfbeh": "tied in both steps, since the change is left out",
+    "contact11": "one element under pressure, held sideways: its upper side comes 100 x 0.2 / 210000 = 9.52e-5 closer to "
+    "its lower one, in abut everywhere, in CalculiX with the deck's penalty by 8.7 to 9.5e-5",
     "contact2": "in the second of three steps; the pressure space: P2, with dual-P1 0.41 %",
     "cubespring": "the side that carries the pressure: with that of CalculiX both agree",
     "fricloop": "one facet on another, pressed in the first step: friction at its four corners, where abut has it, holds it "

@@ -61,6 +61,15 @@ def test_end_turned(given: tuple[str, str], tmp_path: Path) -> None:
     assert end(solution)[2] == pytest.approx(-0.01 * LENGTH / 2, rel=2e-3)
 
 
+@pytest.mark.parametrize("word", ["rectangular", "Rect", "RECTANGLE"])
+def test_section_in_any_spelling(word: str, tmp_path: Path) -> None:
+    """CalculiX reads the first four letters of the section, in any case."""
+    text = beam("B32", section=SECTION.replace("RECT", word))
+    assert np.ptp(load(tmp_path, text + step("*CLOAD", "END, 3, 1.")).model.mesh.points, axis=0) == pytest.approx(
+        [LENGTH, WIDE, HIGH]
+    )
+
+
 def test_offset_and_gravity(tmp_path: Path) -> None:
     """The section lies beside its nodes; gravity acts on its volume."""
     text = beam("B32", section=SECTION.replace("RECT", "RECT, OFFSET1=0.5"))

@@ -20,7 +20,7 @@ from abut.mesh import make
 from abut.problem.linearised import Linearised
 from abut.problem.pair import Pair
 from models.rigid import glued
-from models.sliding import FIRST, SOFT, THEN, arched, bent, finite, turned
+from models.sliding import FIRST, SOFT, THEN, arched, bent, finite, pressed_in_space, turned
 
 TWO_STEPS = abut.SolveOptions(times=(0.4, 1.0))
 AGREE = 1e-6  # equilibrium is met to 1e-9 of the largest force, and pressures and slip are worse conditioned
@@ -192,12 +192,13 @@ def at_rest(system: Linearised) -> Linearised:
 
 
 def test_large_models_choose_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    """By size in 3D, never in 2D."""
-    flat, solid = (finite(model) for model in (arched(0.3), cushion(0.3, "hex8", (4, 3))))
-    assert choose("auto", solid) == choose("auto", flat) == "direct"
+    """By size in 3D; never in 2D, nor where bodies are one cell thick, whose factors are those of a surface."""
+    models = (arched(0.3), cushion(0.3, "hex8", (4, 3)), pressed_in_space(0.3))
+    flat, layer, solid = (finite(model) for model in models)
+    assert choose("auto", solid) == choose("auto", layer) == choose("auto", flat) == "direct"
     monkeypatch.setattr("abut.linear.choice.LARGE_FINITE", {1: 100, 2: 100})
-    assert choose("auto", solid) == "amg"
-    assert choose("auto", flat) == "direct"
+    assert choose("auto", solid) == choose("amg", layer) == "amg"
+    assert choose("auto", layer) == choose("auto", flat) == "direct"
 
 
 def test_tractions_do_not_depend_on_the_tangents_they_have() -> None:

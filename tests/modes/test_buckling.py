@@ -73,5 +73,7 @@ def test_a_ring_buckles_under_pressure():
 def test_what_cannot_buckle_is_told():
     with pytest.raises(InputError, match="buckling: there is no stress"):
         abut.solve(column(0.0))
+    with pytest.raises(InputError, match="check the loads' signs"):
+        abut.solve(column(2.0))
     with pytest.raises(InputError, match="small displacements"):
         abut.solve(column(-1.0, "finite"))

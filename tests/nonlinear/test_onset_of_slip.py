@@ -152,7 +152,7 @@ def test_where_nothing_slips_the_next_step_ends_where_something_will() -> None:
 def test_where_slip_turns_the_next_step_is_twice_as_long_at_most() -> None:
     """All slips, but not along one line yet: a step as long as the one that was refused would be refused again."""
     pace = Pace([1.0], first=1.0, slips=Slips())
-    turning = Onset(fresh=0.05, bent=1e-4, sticks=0.0, limit=1.0)
+    turning = Onset(fresh=0.05, turns=0.05, bent=1e-4, sticks=0.0, limit=1.0)
     assert pace.refine(Onset(fresh=1.0, bent=1.0, limit=1.0))
     begin = pace.end
     pace.take(5, onset=turning)

@@ -167,10 +167,10 @@ def _add_supports(model: Model, skin: _Skin) -> None:
             moved[nodes] |= callable(value)
     for on in (*(c.on for c in model.couplings), *(r.on for r in model.rotations)):
         held[mesh.nodes_of(on)] = True
-    for equation in model.equations:
-        for term in equation.terms:
-            at = mesh.nodes_of(term.on) if isinstance(term.on, str) else np.array([int(term.on)])
-            skin.unknown[skin.touching(_marked(model, at), False)] = True
+    linked = np.zeros(len(mesh.points), dtype=bool)
+    for term in (term for equation in model.equations for term in equation.terms):
+        linked[mesh.nodes_of(term.on) if isinstance(term.on, str) else int(term.on)] = True
+    skin.unknown[skin.touching(linked, False)] = True
     for places, every in (([s for p in model.preloads for s in p.sides], True), ([s.on for s in model.springs], False)):
         for on in places:  # what sections and springs exert is not known point by point
             skin.unknown[skin.touching(_marked(model, mesh.nodes_of(on)), every)] = True

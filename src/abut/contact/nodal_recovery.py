@@ -87,10 +87,14 @@ class Averages:
             at = x + np.einsum("nab,nb->na", along, at - x)
         used = (mass != 0.0).astype(float)
         apart, rise = at[rows][:, None] - at[rows][:, :, None], average[rows][:, None] - average[rows][:, :, None]
-        close = used / np.maximum((apart**2).sum(axis=-1), 1e-300)
+        square = (apart**2).sum(axis=-1)
+        close = used / np.maximum(square, 1e-300)
         if along is not None:
             apart = np.einsum("fiab,fijb->fija", along[rows], apart)
         metric = self._sum(np.einsum("fij,fija,fijb->fiab", close, apart, apart))[points]
+        if along is not None:  # none is left where planes meet
+            left, all_of_it = metric.trace(axis1=1, axis2=2), self._sum((close * square).sum(axis=2))[points]
+            metric[left < FLAT_STAR * all_of_it] = 0.0
         rate = self._sum(np.einsum("fij,fija,fij->fia", close, apart, rise)).reshape(len(average), -1, 1)[points]
         return np.asarray((np.linalg.pinv(metric, rcond=FLAT_STAR, hermitian=True) @ rate)[..., 0])
 

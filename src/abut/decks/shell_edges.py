@@ -1,6 +1,7 @@
 """Linear shells of a deck with nodes in the middle of their edges, which are nodes of the deck from then on.
 
-They are held as both ends of their edge are held, where it is at the rim of the shell, and are as warm as both together."""
+They are held as both ends of their edge are held, where it is at the rim of the shell, and are as warm as both together.
+Trusses are held at their hinges alone."""
 
 from __future__ import annotations
 
@@ -31,7 +32,8 @@ def quadratic(deck: Deck) -> Deck:
         np.concatenate([c[:, -len(edges_of(b.type.kind)) :].ravel() for b, (_, c) in zip(thin, cells)]).tolist()
     )
     first = len(deck.nodes)
-    rim = [i for i in range(len(ends)) if times[first + i] == 1]
+    bars = {n for b, (_, c) in zip(thin, cells) if b.type.thin == "truss" for n in c[:, 2].tolist()}
+    rim = [i for i in range(len(ends)) if times[first + i] == 1 and first + i not in bars]
     middles = _Middles(nodes[first:][rim], deck.nodes[ends[rim]])
     every = _Middles(nodes[first:], deck.nodes[ends])
     return replace(

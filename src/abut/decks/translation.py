@@ -21,7 +21,7 @@ from abut.decks.friction import friction_options, path_notes
 from abut.decks.holds import holds
 from abut.decks.large import finite_notes, is_finite, load_steps, plastic_steps, unsupported, yields
 from abut.decks.metal import metal_law
-from abut.decks.modes import modes
+from abut.decks.modes import modes, with_stiff_beams
 from abut.decks.output import output_options, tables, with_tables
 from abut.decks.overclosure import overclosure_notes, own_laws, softened
 from abut.decks.plane import plane_of, thickness
@@ -106,7 +106,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     reasons = Reasons()
     for error in unsupported(deck):
         reasons.add(error)
-    plane = plane_of(deck)
+    plane, deck = plane_of(deck), with_stiff_beams(deck)
     notes = [f"{block.code}: {block.type.instead}" for block in deck.blocks if block.type.instead]
     deck = cut(expanded(deck, is_finite(deck)))
     notes = [*deck.notes, *notes, *overclosure_notes(deck, soft), *finite_notes(deck), *spring_notes(deck)]

@@ -9,8 +9,18 @@ from importlib.util import find_spec
 from abut.cells import CELLS
 from abut.diagnosis.finding import Finding
 from abut.linear.choice import chosen
-from abut.linear.cost_model import LARGE, LARGE_FINITE, LARGE_ON_MANY, MEMORY, effort, seconds, typical_steps
+from abut.linear.cost_model import (
+    LARGE,
+    LARGE_FINITE,
+    LARGE_ON_MANY,
+    MEMORY,
+    MEMORY_LAYER,
+    effort,
+    seconds,
+    typical_steps,
+)
 from abut.linear.direct import available_memory
+from abut.mesh.one_layer import one_layer
 from abut.model import Model
 from abut.problem.constraints import Constraints
 from abut.problem.pair import Pair
@@ -35,10 +45,13 @@ def foresee(model: Model, constraints: Constraints, pairs: Sequence[Pair]) -> Fo
     n = int(constraints.free.shape[1])
     petsc = model.solve.linear == "petsc"
     sizes = LARGE_ON_MANY if petsc else LARGE_FINITE if model.finite else LARGE
-    coupled = petsc and constraints.coupled
-    solver = chosen("auto" if petsc else model.solve.linear, n, pairs, model.mesh, coupled, sizes)
+    thin = one_layer(model.mesh, model.deformable.body_of >= 0)
+    unfit = constraints.coupled if petsc else thin
+    solver = chosen("auto" if petsc else model.solve.linear, n, pairs, model.mesh, unfit, sizes)
     degree = max(CELLS[block.kind].degree for block in model.mesh.blocks)
     memory = MEMORY[model.dim, "direct" if model.dim == 2 else solver, degree]
+    if thin and solver == "direct":
+        memory = MEMORY_LAYER
     return Foreseen(solver, seconds(effort(model, n, pairs), solver), memory.megabytes(n))
 
 

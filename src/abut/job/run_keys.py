@@ -15,7 +15,8 @@ RUN: dict[str, dict[str, str]] = {
         "end": "time at the end of the run: all times of the file, those of amplitudes too, run from 0 to it",
         "times": "ends of the load steps, rising to the end, where they are unequal; with contact under finite kinematics "
         "further ones come between them where one does not converge",
-        "linear": "linear solver; auto takes multigrid (amg) for large 3D models, and petsc on several processes",
+        "linear": "linear solver; auto takes multigrid (amg) for large 3D models more than one cell thick, and petsc on "
+        "several processes",
         "max_iterations": "iterations allowed in a load step; with friction, of each method that is tried in it",
         "seconds": "time that the run may take: after it the run ends with the step or the iteration that it is in, the "
         "steps done so far are written, and abut run --restart goes on from there; left out: no limit",

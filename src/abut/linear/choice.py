@@ -22,6 +22,7 @@ from abut.linear.schur_preconditioner import half_spaces, interfaces
 from abut.linear.solver import Prepared
 from abut.linear.static_condensation import condense
 from abut.mesh.mesh import Mesh
+from abut.mesh.one_layer import one_layer
 from abut.problem.linearised import Linearised
 from abut.problem.pair import Pair
 from abut.problem.problem import ContactProblem, Problem
@@ -30,19 +31,21 @@ MANY = 200  # displacements that move many points each, from which on multigrid 
 
 
 def choose(linear: str, problem: ContactProblem) -> str:
-    """ "direct" or "amg" for what the user asked for; "auto" goes by size, and by what multigrid can do. Raises InputError
-    where "amg" cannot serve the problem."""
+    """ "direct" or "amg" for what the user asked for; "auto" goes by size, and by what multigrid can do. In plates and
+    shells, one cell thick, factors stay small, and thin cells are not for multigrid. Raises InputError where "amg" cannot
+    serve the problem."""
     sizes = LARGE_FINITE if problem.model.finite else LARGE
     constraints, mesh = problem.constraints, problem.model.mesh
     many = constraints.coupled and int(wide(constraints.free, mesh.dim).sum()) > MANY
-    return chosen(linear, problem.n_free, problem.pairs, mesh, many, sizes)
+    unfit = many or one_layer(mesh, problem.model.deformable.body_of >= 0)
+    return chosen(linear, problem.n_free, problem.pairs, mesh, unfit, sizes)
 
 
 def chosen(
-    linear: str, n_free: int, pairs: Sequence[Pair], mesh: Mesh, coupled: bool, sizes: Mapping[int, int] = LARGE
+    linear: str, n_free: int, pairs: Sequence[Pair], mesh: Mesh, unfit: bool, sizes: Mapping[int, int] = LARGE
 ) -> str:
-    """The same from the number of free displacements and the contact pairs; coupled: too many free displacements belong to
-    several points at once; sizes: from where on multigrid wins."""
+    """The same from the number of free displacements and the contact pairs; unfit: too many free displacements belong to
+    several points at once, or the mesh is one cell thick; sizes: from where on multigrid wins."""
     smooth = [pair.contact.name for pair in pairs if pair.smooth and pair.frictional]
     if linear == "amg" and smooth:
         raise InputError(
@@ -53,7 +56,7 @@ def chosen(
         return linear
     degree = max(CELLS[block.kind].degree for block in mesh.blocks)
     large = mesh.dim == 3 and n_free >= sizes[degree]
-    able = not (coupled or smooth) and find_spec("pyamg") is not None and not any(pair.redundant for pair in pairs)
+    able = not (unfit or smooth) and find_spec("pyamg") is not None and not any(pair.redundant for pair in pairs)
     return "amg" if large and able else "direct"
 
 

@@ -35,7 +35,7 @@ class Factors:
         below = (sp.diags(scale) @ rows).tocsr()
         whole = sp.bmat([[upper, below.T], [None, corner]], format="csr") if rows.shape[0] else upper
         object.__setattr__(self, "_scale", scale)
-        object.__setattr__(self, "_factors", direct.Factorization(direct.store_diagonal(whole)))
+        object.__setattr__(self, "_factors", direct.Factorization(direct.store_diagonal(whole), quick=True))
 
     def solve(self, force: Vector) -> Vector:
         """Displacements (n_free,) by forces (n_free,)."""

@@ -14,7 +14,8 @@ from abut.types import Sparse
 
 MORE = 4  # eigenvalues beyond those asked for, between which a count finds a gap
 APART = 1e-5  # relative distance of eigenvalues that are two
-TOLERANCE = 1e-12  # of Ritz values
+TOLERANCE = 1e-10  # of Ritz values; modes then to about as much, frequencies better
+RESTARTS = 100  # of the method; where all t are negative it finds none however long
 Vector = NDArray[np.float64]
 Solve = Callable[[Vector], Vector]
 
@@ -41,7 +42,8 @@ class Pairs:
 
 
 def largest(pencil: Pencil, count: int, seed: int = 0) -> Pairs:
-    """The ``count`` largest t of ``pencil``, or as many as there may be. Raises ConvergenceError where iterations end."""
+    """The ``count`` largest t of ``pencil``, or as many as there may be; of positive t those found where iterations end.
+    Raises ConvergenceError where they end else."""
     n, count = pencil.size, max(min(count, pencil.free - 1), 1)
     start = pencil.solve(pencil.left @ np.random.default_rng(seed).standard_normal(n))
     operator = spla.LinearOperator((n, n), matvec=lambda x: pencil.solve(np.ravel(x)), dtype=float)
@@ -62,8 +64,20 @@ def largest(pencil: Pencil, count: int, seed: int = 0) -> Pairs:
             values = 1.0 / values
         else:
             values, vectors = spla.eigsh(
-                pencil.left, count, pencil.metric, Minv=operator, which="LA", v0=start, ncv=basis, tol=TOLERANCE
+                pencil.left,
+                count,
+                pencil.metric,
+                Minv=operator,
+                which="LA",
+                v0=start,
+                ncv=basis,
+                tol=TOLERANCE,
+                maxiter=RESTARTS,
             )
+    except spla.ArpackNoConvergence as ended:
+        if pencil.left is pencil.metric:
+            raise ConvergenceError(f"modes: Lanczos' method did not converge ({ended}); ask for fewer modes") from None
+        values, vectors = ended.eigenvalues, ended.eigenvectors
     except spla.ArpackError as reason:
         raise ConvergenceError(f"modes: Lanczos' method did not converge ({reason}); ask for fewer modes") from None
     return Pairs(values, vectors)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from abut.model.conditions import History
 from abut.model.step_ends import SAME as NEAR
@@ -117,8 +117,11 @@ class Pace:
             self._length, self._curve, self._goes_on = self._fresh(), math.inf, False
             return
         if self._follows:
-            slides = onset.sticks <= 0.0 and math.isinf(self._next(onset))  # all of it, and no longer turns
-            self._curve = math.inf if first or slides else self._rounded(self._factor(onset) * taken)
+            ahead = (
+                onset if onset.sticks > 0.0 else replace(onset, fresh=onset.turns)
+            )  # where all slips it may only turn
+            free = first or (ahead.sticks <= 0.0 and math.isinf(self._next(ahead)))
+            self._curve = math.inf if free else self._rounded(self._factor(ahead) * taken)
         steps = self._settings
         hard = iterations > 2 * steps.easy
         factor = steps.growth if iterations <= steps.easy else steps.shrink if hard else 1.0

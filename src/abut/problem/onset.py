@@ -30,11 +30,13 @@ class Most:
 @dataclass(frozen=True)
 class Onset:
     """Of a step, forces by area: fresh: of friction at points that stick at its beginning and slip at its end, and by how
-    much that of others which slip turns; bent: what the straight line from its beginning to its end misses of the tractions
-    where contact slips, beside what follows from the pressure; sticks: of friction at points that stick at its end; limit:
-    what friction carries at most. ahead: how many times as long the next step may be if tractions go on as in this one."""
+    much that of others which slip turns; turns: the latter alone; bent: what the straight line from its beginning to its
+    end misses of the tractions where contact slips, beside what follows from the pressure; sticks: of friction at points
+    that stick at its end; limit: what friction carries at most. ahead: how many times as long the next step may be if
+    tractions go on as in this one."""
 
     fresh: float = 0.0
+    turns: float = 0.0
     bent: float = 0.0
     sticks: float = 0.0
     limit: float = 0.0
@@ -49,14 +51,16 @@ class Onset:
 @dataclass(frozen=True)
 class _Points:
     """Of the points of a pair, in a step: limit: (n,) forces of friction; change: (n, dim - 1) of its share that they carry,
-    to ``last``; missed: (n,) by the straight line, and fresh: (n,) share that begins to slip, of those that slip; sticks:
-    (n,) whether they stick in the end; held: (n,) whether they do and were pressed all along."""
+    to ``last``; missed: (n,) by the straight line, and fresh: (n,) share that begins to slip or turns, of those that slip;
+    turns: (n,) of it what turns; sticks: (n,) whether they stick in the end; held: (n,) whether they do and were pressed
+    all along."""
 
     limit: Array
     change: Array
     last: Array
     missed: Array
     fresh: Array
+    turns: Array
     sticks: NDArray[np.bool_]
     held: NDArray[np.bool_]
 
@@ -77,6 +81,7 @@ def onset(pairs: Sequence[Pair], earlier: State | None, before: State, now: Stat
     going = [(each.limit[each.held], *until_slip(each.last[each.held], each.change[each.held])) for each in found]
     return Onset(
         fresh=float(sum(each.limit @ each.fresh for each in found)),
+        turns=float(sum(each.limit @ each.turns for each in found)),
         bent=float(sum(each.limit @ each.missed for each in found)),
         sticks=float(sum(each.limit[each.sticks].sum() for each in found)),
         limit=limit,
@@ -100,7 +105,9 @@ def _points(
         missed = np.where(multipliers[2][pair.normal] > 0.0, missed_by_chord(rise, off), rise)
     fresh = np.where(slipped, np.minimum(rise, 1.0), 1.0)
     on = slips & pressed
-    return _Points(limit, change, last, np.where(on, missed, 0.0), np.where(on, fresh, 0.0), ~slips, ~slips & pressed)
+    fresh = np.where(on, fresh, 0.0)
+    turns = np.where(slipped, fresh, 0.0)
+    return _Points(limit, change, last, np.where(on, missed, 0.0), fresh, turns, ~slips, ~slips & pressed)
 
 
 def missed_by_chord(rise: Array, off: Array) -> Array:

@@ -13,8 +13,8 @@ class ElementType:
     """kind: the cell (``abut.cells``); plane: "strain", "stress", "axisymmetric", or None in 3D; integration as in
     ``abut.Solid``, measured on single and few elements of CalculiX 2.20: its C3D8, CPE4 and CAX4 are fully integrated,
     its C3D10, C3D15 and triangles with 6 nodes have 4, 9 and 3 points. instead: what abut takes in place of the
-    element's own formulation, "" where it is the same. thin: "shell" or "beam", a cell of a surface or line that its
-    section makes solid, or ""."""
+    element's own formulation, "" where it is the same. thin: "shell", "beam" or "truss", a cell of a surface or line
+    that its section makes solid, or ""."""
 
     kind: str
     plane: str | None
@@ -101,13 +101,16 @@ def _shells() -> dict[str, ElementType]:
 
 
 def _beams() -> dict[str, ElementType]:
-    """B32 becomes C3D20, B32R C3D20R; linear ones likewise get a node in their middle."""
+    """B32 becomes C3D20, B32R C3D20R; linear ones likewise get a node in their middle. Trusses become C3D20: with reduced
+    integration hinges would leave modes without energy."""
     middle = "a node in its middle, expanded to C3D20R instead of {}; less stiff in bending"
     return {
         "B31": ElementType("line2", None, "reduced", middle.format("C3D8I"), "beam"),
         "B31R": ElementType("line2", None, "reduced", middle.format("C3D8R"), "beam"),
         "B32": ElementType("line3", None, "full", "", "beam"),
         "B32R": ElementType("line3", None, "reduced", "", "beam"),
+        "T3D2": ElementType("line2", None, "full", "", "truss"),
+        "T3D3": ElementType("line3", None, "full", "", "truss"),
     }
 
 

@@ -33,7 +33,8 @@ class Modes:
 
 def without_modes(cards: Sequence[Card], ignore: Collection[str] = ()) -> tuple[tuple[Card, ...], Modes | None]:
     """The cards without what asks for modes, and that; all of them and None where abut finds none such: but in the last
-    step, below a limit of frequencies, with loads that a state of its own would need; or ``ignore`` names the card.
+    step, below a limit of frequencies, with loads that a state of its own would need, of cyclic symmetry with nodal
+    diameters from above 0 on; or ``ignore`` names the card.
 
     As the only step it becomes a static one: unloaded for frequencies, with its loads for buckling. *FREQUENCY after static
     steps needs PERTURBATION, as the state is otherwise not that of these steps."""
@@ -48,21 +49,32 @@ def without_modes(cards: Sequence[Card], ignore: Collection[str] = ()) -> tuple[
         return tuple(cards), None
     card, perturbed = asking[0], step[0].has("PERTURBATION")
     changed = {other.key for other in step} & set(CHANGES)
+    cyclic = any(other.key == "CYCLICSYMMETRYMODEL" for other in before)
+    if cyclic and card.key == "FREQUENCY" and _lowest_diameter(step):
+        return tuple(cards), None
     if len(starts) == 1 and not perturbed and (card.key == "BUCKLE" or changed <= {"BOUNDARY"}):
         static = Card("STATIC", "*STATIC", {}, (), card.place)
         return (*before, *(static if other is card else other for other in step)), Modes(
-            card.key, count, False, _note(card)
+            card.key, count, False, _note(card, cyclic)
         )
     if len(starts) > 1 and perturbed and card.key == "FREQUENCY" and not changed:
-        return tuple(before), Modes(card.key, count, True, _note(card))
+        return tuple(before), Modes(card.key, count, True, _note(card, cyclic))
     return tuple(cards), None
 
 
-def _note(card: Card) -> str:
-    fields = card.lines[0].fields
-    if card.key != "FREQUENCY" or len(fields) < 2 or not fields[1].strip():
-        return ""
-    return f"{card.place}: frequencies below the lower limit of {fields[1].strip()} are given and counted, too"
+def _note(card: Card, cyclic: bool) -> str:
+    fields, told = card.lines[0].fields, []
+    if card.key == "FREQUENCY" and len(fields) > 1 and fields[1].strip():
+        told.append(f"frequencies below the lower limit of {fields[1].strip()} are given and counted, too")
+    if cyclic:
+        told.append("modes alike in all sectors (nodal diameter 0) are given, none that differ between sectors")
+    return f"{card.place}: {'; '.join(told)}" if told else ""
+
+
+def _lowest_diameter(step: Sequence[Card]) -> int:
+    """Lowest nodal diameter that is asked for, 0 where nothing says."""
+    texts = [card.get("NMIN") or "0" for card in step if card.key == "SELECTCYCLICSYMMETRYMODES"]
+    return max((int(text) if text.strip().isdecimal() else 0 for text in texts), default=0)
 
 
 def _count(card: Card) -> int | None:

@@ -143,7 +143,7 @@ def _beam_section(
     card: Card, mesh: MeshCards, known: Mapping[str, Material] | None, axes: Mapping[str, Card]
 ) -> Section:
     """One *BEAM SECTION. Raises InputError for other sections than rectangles, and for widths that are none."""
-    if key(card.get("SECTION", "RECT") or "") != "RECT":
+    if not key(card.get("SECTION", "RECT") or "").startswith("RECT"):  # CalculiX reads four letters
         raise card.error(
             f"SECTION={card.get('SECTION')}: only rectangles (RECT) are supported; model the part with solids"
         )

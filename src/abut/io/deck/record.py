@@ -131,12 +131,19 @@ class Section:
 class Thin:
     """Nodes of solids that stand for a node of a shell: its displacement is their mean, its turn that of the line from the
     first to the last, ``along`` the unit vector from the former to the latter and ``apart`` their distance; of a knot, whose
-    turn is that of a coupling, None. middle: the node between them, which goes with one that is held, or 0."""
+    turn is that of a coupling, None. middle: the node between them, which goes with one that is held, or 0. weights: of the
+    nodes in the mean, which add up to 1; all alike where left out."""
 
     nodes: tuple[int, ...]
     along: tuple[float, float, float] | None = None
     apart: float = 0.0
     middle: int = 0
+    weights: tuple[float, ...] = ()
+
+    @property
+    def shares(self) -> tuple[tuple[int, float], ...]:
+        """The nodes, and the weight of each in the mean."""
+        return tuple(zip(self.nodes, self.weights or (1.0 / len(self.nodes),) * len(self.nodes)))
 
 
 @dataclass(frozen=True)

@@ -97,14 +97,15 @@ QUIET = (
 )  # fmt: skip
 
 PROCEDURES = {  # other than *STATIC: ignoring one leaves the whole step out
-    "BUCKLE": "buckling",
+    "BUCKLE": "buckling but as the only step",
     "COMPLEX FREQUENCY": "complex eigenfrequencies",
     "COUPLED TEMPERATURE-DISPLACEMENT": "heat transfer coupled with displacement",
     "CRACK PROPAGATION": "crack propagation",
     "DYNAMIC": "dynamics",
     "ELECTROMAGNETICS": "electromagnetics",
     "FEASIBLE DIRECTION": "optimisation",
-    "FREQUENCY": "eigenfrequencies",
+    "FREQUENCY": "eigenfrequencies but as the only step, or in the last one with *STEP, PERTURBATION (of the loaded state), "
+    "without loads, upper limit and STORAGE=YES, of cyclic symmetry with the nodal diameter 0",
     "GREEN": "Green functions",
     "HEAT TRANSFER": "heat transfer",
     "MODAL DYNAMIC": "modal dynamics",

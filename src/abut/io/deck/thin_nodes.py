@@ -93,10 +93,10 @@ def turns(
 
 
 def _shares(thin: Thin, direction: Vector) -> dict[Point, float]:
-    """A vector in equal parts at each node."""
+    """A vector in parts at each node."""
     return {
-        (node, int(k)): float(direction[k]) / len(thin.nodes)
-        for node in thin.nodes
+        (node, int(k)): float(direction[k]) * share
+        for node, share in thin.shares
         for k in np.flatnonzero(np.abs(direction) > SMALL)
     }
 
