@@ -31,7 +31,7 @@ from abut.report.probes import charts, probe_table
 from abut.report.quantities import extremes, largest_by_body
 from abut.report.scene import scene
 from abut.report.still import still_page
-from abut.report.times import time_at, time_label
+from abut.report.times import time_axis
 from abut.solution import ContactResult, Solution
 from abut.types import Json
 
@@ -342,8 +342,7 @@ def _history(solution: Solution) -> Json:
     names = [contact.name for contact in solution.contacts]
     each = [[step.contacts[i] for step in solution.steps] for i in range(len(names))]
     return {
-        "time": _plain(time_at(solution.model, [step.factor for step in solution.steps]).tolist()),
-        "label": time_label(solution.model),
+        **time_axis(solution),
         "contacts": [
             {
                 "name": name,

@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.model import Model
+from abut.solution import Solution
+from abut.types import Json
 
 SHARE = "time (share of the load, where no amplitude says otherwise)"
 
@@ -20,3 +22,9 @@ def time_label(model: Model) -> str:
 def time_at(model: Model, shares: Any) -> NDArray[np.float64]:
     """Times from shares of the end."""
     return np.asarray(shares, dtype=float) * model.solve.end
+
+
+def time_axis(solution: Solution) -> Json:
+    """For the page's script: times at the ends of the steps, and what the axis says."""
+    times = time_at(solution.model, [step.factor for step in solution.steps])
+    return {"time": times.tolist(), "label": time_label(solution.model)}
