@@ -155,13 +155,13 @@ class Pace:
 
     def _factor(self, onset: Onset) -> float:
         """How much longer the next step is than one with an onset of slip that was taken."""
-        longest = 2.0 if onset.fresh > 0.0 else float(self._settings.points)
+        longest = 2.0 if onset.shares[0] > self._same else float(self._settings.points)
         return min(longest, onset.ahead, self._settings.aim * self._next(onset))
 
     def _next(self, onset: Onset) -> float:
         """How much longer a step may be than the one that shows an onset of slip, theory (R21)."""
         fresh, bent = onset.shares
-        if fresh <= 0.0 or bent <= 0.0:
+        if fresh <= self._same or bent <= 0.0:
             return math.inf
         return max(1.0 / (self._settings.points * fresh), math.sqrt(self._settings.bent / bent))
 
