@@ -16,7 +16,7 @@ from abut.types import Array, Sparse
 
 PLANE = np.array([[0, 3], [3, 1]])  # places of a tensor's components in xx yy zz xy yz zx
 SPACE = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2]])
-HOOP = 2
+HOOP = 2  # number of the stress round the axis
 
 
 def stress_stiffness(solids: Solids, stress: PointStress) -> Sparse:

@@ -9,11 +9,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from abut.decks.solid_blocks import by_block, free_numbers, sections_of, with_solids
 from abut.decks.thin import renamed
 from abut.io.deck.reasons import DeckError, Place
 from abut.io.deck.record import Block, Coupling, Deck, Equation, Numbers, Section, Thin
 from abut.mesh.thin.beams import COUNT, Beam, Sections, expand_beams
 
+CARD = "*BEAM SECTION"
 EDGES = ((4, 0, 1), (5, 1, 2), (6, 2, 3), (7, 3, 0))  # of a section: the middle of a side, and its corners
 
 
@@ -48,19 +50,15 @@ def _ordered(block: Block) -> Numbers:
 
 
 def _sections(deck: Deck, block: Block) -> list[Section]:
-    by_number = {number: section for section in deck.sections for number in section.elements.tolist()}
-    for number in block.ids.tolist():
-        if number not in by_number or not by_number[number].widths[0]:
-            raise DeckError(block.place, f"*ELEMENT: element {number} without *BEAM SECTION; give its set a section")
-    return [by_number[number] for number in block.ids.tolist()]
+    result = sections_of(deck, block, "element", CARD)
+    for number, section in zip(block.ids.tolist(), result):
+        if not section.widths[0]:
+            raise DeckError(block.place, f"*ELEMENT: element {number} without {CARD}; give its set a section")
+    return result
 
 
 def _with_solids(deck: Deck, blocks: list[Block], solid: Sections, finite: bool) -> Deck:
-    used = np.unique(solid.cells)
-    taken = [int(deck.nodes.max()), *deck.references, *(section.node for section in deck.pretension)]
-    number = np.full(len(solid.points), -1, np.int64)
-    number[used] = max(taken) + 1 + np.arange(len(used))
-    cells = iter(np.split(number[solid.cells], np.cumsum([len(block.ids) for block in blocks])[:-1]))
+    number = free_numbers(deck, len(solid.points), [solid.cells])
     made: dict[
         int, list[Numbers]
     ] = {}  # node -> the eight nodes of each of its sections, -1 for those that are not there
@@ -72,17 +70,8 @@ def _with_solids(deck: Deck, blocks: list[Block], solid: Sections, finite: bool)
                 blocks[0].place,
                 f"*ELEMENT: node {node} belongs to a beam and a shell, or is a reference; join them by *TIE",
             )
-    new = replace(
-        deck,
-        nodes=np.concatenate([deck.nodes, number[used]]),
-        points=np.concatenate([deck.points, solid.points[used]]),
-        blocks=tuple(
-            replace(block, type=replace(block.type, kind="hex20", thin=""), nodes=next(cells))
-            if block.type.thin == "beam"
-            else block
-            for block in deck.blocks
-        ),
-    )
+    made_of = [("hex20", rows) for rows in by_block(blocks, solid.cells)]
+    new = with_solids(deck, "beam", solid.points, number, made_of)
     new = renamed(new, {node: np.unique(np.concatenate(n)[np.concatenate(n) >= 0]) for node, n in made.items()}, {})
     held, turned = _turned(deck, ("boundary",)), _turned(deck, ("boundary", "force"))
     place = blocks[0].place

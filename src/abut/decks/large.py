@@ -9,9 +9,9 @@ from abut.io.deck.reasons import DeckError
 from abut.io.deck.record import Deck, Step
 from abut.io.deck.time_histories import ALLOWED, BODY_LOADS, courses, ends, times
 from abut.model import SolveOptions
+from abut.model.step_ends import SAME
 
 SHARE = 0.1  # of an automatic step: its increments where the time of each must be said beforehand, at most as many
-SAME = 1e-9  # times that differ by less are the same
 DRAG = (
     "abut adds a drag of its own where no increment is short enough, until bodies are at rest; the deck's are not read"
 )

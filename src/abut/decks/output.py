@@ -15,6 +15,7 @@ from abut.io.deck.time_histories import ends
 from abut.model import Model, Probe
 from abut.model.probe import QUANTITIES, YIELDED
 from abut.model.step_choice import StepChoice
+from abut.model.step_ends import SAME
 from abut.output.options import CONTACT, FRD, MATERIAL, USUAL, VTU, Output
 from abut.probing import find_place
 
@@ -37,7 +38,6 @@ IN_FILES = {  # fields of result files
     },
     CONTACTS: dict.fromkeys(("CSTR", "CSTRESS", "CPRESS", "CDIS", "CDISP", "COPEN", "CSHEAR", "CSLIP"), CONTACT),
 }  # fmt: skip
-SAME = 1e-9  # times that differ by less are one
 
 
 @dataclass(frozen=True)

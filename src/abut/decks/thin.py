@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.decks.solid_blocks import free_numbers, sections_of, with_solids
 from abut.io.deck.reasons import DeckError
 from abut.io.deck.record import Block, Coupling, Deck, Faces, Numbers, Prescribed, Section, Thin
 from abut.mesh.thin.shells import Expanded, Shell, expand
@@ -47,26 +48,14 @@ def with_thick_shells(deck: Deck, finite: bool) -> Deck:
 
 
 def _with_solids(deck: Deck, blocks: list[Block], solid: Expanded, finite: bool) -> Deck:
-    used = np.unique(np.concatenate([cells.ravel() for _, cells in solid.cells]))
-    taken = [int(deck.nodes.max()), *deck.references, *(section.node for section in deck.pretension)]
-    number = np.full(len(solid.points), -1, np.int64)
-    number[used] = max(taken) + 1 + np.arange(len(used))
-    made = iter(
-        replace(block, type=replace(block.type, kind=kind, thin=""), nodes=number[cells])
-        for block, (kind, cells) in zip(blocks, solid.cells)
-    )
+    number = free_numbers(deck, len(solid.points), [cells for _, cells in solid.cells])
     thin = _thin(deck, solid, number)
     if finite:
         _check_turned(deck, thin)
     knots = [node for node, each in thin.items() if each.along is None]
     stand_for = _every(deck, solid, number)
-    deck = replace(
-        deck,
-        nodes=np.concatenate([deck.nodes, number[used]]),
-        points=np.concatenate([deck.points, solid.points[used]]),
-        blocks=tuple(next(made) if block.type.thin == "shell" else block for block in deck.blocks),
-        thin={node: each for node, each in thin.items() if node not in knots},
-    )
+    deck = with_solids(deck, "shell", solid.points, number, solid.cells)
+    deck = replace(deck, thin={node: each for node, each in thin.items() if node not in knots})
     at = np.einsum(
         "nd,nd->n", solid.points - np.repeat(deck.points[solid.node], 3, axis=0), np.repeat(solid.normal, 3, axis=0)
     )
@@ -105,12 +94,7 @@ def _every(deck: Deck, solid: Expanded, number: Numbers) -> dict[int, Numbers]:
 
 
 def _section_of(deck: Deck, block: Block) -> list[Section]:
-    """Of each element of a block. Raises InputError for one without a section."""
-    by_number = {number: section for section in deck.sections for number in section.elements.tolist()}
-    for number in block.ids.tolist():
-        if number not in by_number:
-            raise DeckError(block.place, f"*ELEMENT: element {number} without *SHELL SECTION; give its set a section")
-    return [by_number[number] for number in block.ids.tolist()]
+    return sections_of(deck, block, "element", "*SHELL SECTION")
 
 
 def _offsets(deck: Deck, block: Block) -> Vector:

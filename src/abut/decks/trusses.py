@@ -10,13 +10,14 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.decks.solid_blocks import by_block, free_numbers, sections_of, with_solids
 from abut.decks.thin import renamed
 from abut.io.deck.reasons import DeckError
-from abut.io.deck.record import Block, Deck, Equation, Numbers, Section, Thin
+from abut.io.deck.record import Block, Deck, Equation, Numbers, Thin
 from abut.mesh.thin.beams import COUNT, Beam, expand_beams
 
 MEAN = (-1.0 / 12.0,) * 4 + (1.0 / 3.0,) * 4  # over a face of eight nodes: corners, middles of sides
-SMALL = 1e-9
+SMALL = 1e-9  # share of an arm that is rounding
 
 Vector = NDArray[np.float64]
 
@@ -30,7 +31,7 @@ def with_thick_trusses(deck: Deck) -> Deck:
     if not blocks:
         return deck
     own = np.concatenate([_ordered(block) for block in blocks])  # start, end, middle of each bar
-    sections = [section for block in blocks for section in _sections(deck, block)]
+    sections = [section for block in blocks for section in sections_of(deck, block, "truss", "*SOLID SECTION")]
     _check(deck, blocks[0], own)
     points = deck.points[np.searchsorted(deck.nodes, own)]
     along = points[:, 1] - points[:, 0]
@@ -44,10 +45,7 @@ def with_thick_trusses(deck: Deck) -> Deck:
     except ValueError as error:
         number = np.concatenate([block.ids for block in blocks])[error.args[0]]
         raise DeckError(blocks[0].place, f"*ELEMENT: truss {number} has no length; mend the mesh") from None
-    used = np.unique(solid.cells)
-    taken = [int(deck.nodes.max()), *deck.references, *(section.node for section in deck.pretension)]
-    number = np.full(len(solid.points), -1, np.int64)
-    number[used] = max(taken) + 1 + np.arange(len(used))
+    number = free_numbers(deck, len(solid.points), [solid.cells])
     made: dict[int, list[Thin]] = {}
     for node, eight in zip(own.ravel().tolist(), number.reshape(-1, COUNT).tolist()):
         inside = eight[-1] < 0  # a section in the middle has its corners alone
@@ -65,18 +63,8 @@ def with_thick_trusses(deck: Deck) -> Deck:
     corners = number.reshape(-1, 3, COUNT)[:, 0, :4]
     at = solid.points.reshape(-1, 3, COUNT, 3)[:, 0, :4]
     spins = [_spin(n, x - x.mean(axis=0), t, blocks[0]) for n, x, t in zip(corners, at, along)]
-    cells = iter(np.split(number[solid.cells], np.cumsum([len(block.ids) for block in blocks])[:-1]))
-    new = replace(
-        deck,
-        nodes=np.concatenate([deck.nodes, number[used]]),
-        points=np.concatenate([deck.points, solid.points[used]]),
-        blocks=tuple(
-            replace(block, type=replace(block.type, kind="hex20", thin=""), nodes=next(cells))
-            if block.type.thin == "truss"
-            else block
-            for block in deck.blocks
-        ),
-    )
+    made_of = [("hex20", rows) for rows in by_block(blocks, solid.cells)]
+    new = with_solids(deck, "truss", solid.points, number, made_of)
     stand_for = {node: np.unique([n for bar in each for n in bar.nodes]) for node, each in made.items()}
     new = renamed(new, stand_for, {})
     return replace(new, thin={**deck.thin, **first}, equations=(*deck.equations, *hinges, *spins))
@@ -92,14 +80,6 @@ def _spin(nodes: Numbers, arms: Vector, along: Vector, block: Block) -> Equation
 def _ordered(block: Block) -> Numbers:
     """Nodes (n, 3) at start, end and middle of each bar; decks list the middle second where it is theirs."""
     return block.nodes if block.code == "T3D2" else block.nodes[:, [0, 2, 1]]
-
-
-def _sections(deck: Deck, block: Block) -> list[Section]:
-    by_number = {number: section for section in deck.sections for number in section.elements.tolist()}
-    for number in block.ids.tolist():
-        if number not in by_number:
-            raise DeckError(block.place, f"*ELEMENT: truss {number} without *SOLID SECTION; give its set a section")
-    return [by_number[number] for number in block.ids.tolist()]
 
 
 def _check(deck: Deck, block: Block, own: Numbers) -> None:
