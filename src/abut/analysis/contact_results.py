@@ -119,9 +119,7 @@ class PairState:
 EDGE = 0.05  # share of the force that functions with hardly any support may carry
 LITTLE = 0.8 * WEAK_SUPPORT  # the iterations that end a step may move the edge a little
 SOFTENED, SOFTENED_NOTICED = 0.3, 0.02  # gap of a softened law over the indentation: a Hertz peak loses half of that
-IN_PLANE = (
-    0.7  # of the way out of an edge along a plane's normal, nearer than 45 degrees, from which on it lies in that plane
-)
+IN_PLANE = 0.7  # of the way out of an edge along a plane's normal: nearer than 45 degrees, it ends in that plane
 FAINT = 1e-3  # pressure over the largest of all contacts from which down the laws of friction are rounding of those
 
 

@@ -12,11 +12,10 @@ from abut.dofs import dofs_at
 from abut.mesh.facets import bodies_at
 from abut.model import Model
 from abut.model.hold import STAY, Hold
+from abut.model.step_ends import SAME
+from abut.problem.preloads import HELD
 from abut.problem.terms import MatrixTangent, Motion, Share
 from abut.types import Array
-
-HELD = 1e6  # stiffness of what holds over Young's modulus times the size of a cell: what it gives is a millionth
-SAME = 1e-9  # times that differ by less are one
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from abut.problem.follower_loads import Slopes
 from abut.problem.sections import given_force, shortening_row
 from abut.problem.terms import MatrixTangent, Motion, Share
 
-HELD = 1e6  # stiffness of what is locked over Young's modulus times the section's size: what it gives is a millionth
+HELD = 1e6  # stiffness of what is locked or held over Young's modulus times the size of its place: it gives a millionth
 SAME = 1e-9  # times that differ by less are one
 
 
