@@ -49,7 +49,7 @@ def test_a_torque_turns_a_wheel_through_its_backlash() -> None:
 
 @pytest.mark.parametrize("torque", [0.02, 200.0])
 def test_with_friction_at_any_torque(torque: float) -> None:
-    """The first point that meets the wheel comes round the axle, not straight: where that would have to pull it back to stick,
+    """The first point that meets the wheel comes round the axle, not straight: where it would have to be pulled to stick,
     it slips. By statics the moment is the torque's, and no step is taken again."""
     _, moment, solution = ends(torque, 0.2)
     assert moment == pytest.approx(-torque, rel=1e-6)
