@@ -248,10 +248,10 @@ def _carried(step: Step, time: float) -> State:
     while True:
         laws = laws_of(system, state, step.asked)
         there = _iterated(step, system, state, laws, step.settings.accuracy.fine, begins=True)
-        fewer = without_pulling(system, state, there, step.increment)
-        if fewer is None:
+        other = without_pulling(system, state, there, step.increment)
+        if other is None:
             return there
-        state = fewer
+        state = other
 
 
 def _balance(step: Step, state: State, guessed: bool = False) -> Trial:
