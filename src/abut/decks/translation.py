@@ -14,8 +14,9 @@ from abut.contact.sides import bodies_of, find_sides
 from abut.decks.adjusting import adjusted
 from abut.decks.body_loads import body_loads
 from abut.decks.clearance import bilateral_note, gap_options
-from abut.decks.couplings import couplings, reference_loads, reference_nodes, unlisted_notes
+from abut.decks.couplings import beside_notes, couplings, reference_loads, reference_nodes, unlisted_notes
 from abut.decks.elastic import elastic_law
+from abut.decks.element_notes import element_notes
 from abut.decks.expanded import expanded
 from abut.decks.friction import friction_options, path_notes
 from abut.decks.holds import holds
@@ -108,6 +109,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
         reasons.add(error)
     plane, deck = plane_of(deck), with_stiff_beams(deck)
     notes = [f"{block.code}: {block.type.instead}" for block in deck.blocks if block.type.instead]
+    notes += element_notes(deck)
     deck = cut(expanded(deck, is_finite(deck)))
     notes = [*deck.notes, *notes, *overclosure_notes(deck, soft), *finite_notes(deck), *spring_notes(deck)]
     made = pieces(deck)
@@ -123,7 +125,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
             contacts.append(_contact(deck, groups, pair, hard, notes))
     solids = _solids(deck, {name: piece for name, piece in parts.items() if name not in moving}, plane, reasons)
     rigid, bound = _referenced(deck, groups, moving, plane, reasons)
-    notes += [*_idle(deck, groups), *unlisted_notes(deck)]
+    notes += [*_idle(deck, groups), *unlisted_notes(deck), *beside_notes(deck)]
     references = dict(zip([*moving, *(coupling.name for coupling in bound)], reference_nodes(deck)))
     prescribed = _prescribed(deck, groups, parts, plane, references, notes, reasons)
     asked = tables(deck, groups, notes)
