@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 
-from abut.bodies.loads import stress_load, surface_area
 from abut.contact.overclosure import PressureOverclosure
 from abut.contact.sides import bodies_of, find_sides
 from abut.decks.adjusting import adjusted
@@ -30,12 +29,13 @@ from abut.decks.rigid import join, rigid_bodies, with_parts_coupled
 from abut.decks.rubber import of_rubber
 from abut.decks.springs import spring_notes, springs
 from abut.decks.temperatures import history, temperatures
+from abut.decks.tied_nodes import SAME_WAY, looks, with_ties_by_node
 from abut.detection import add_surfaces, find_contacts
 from abut.errors import InputError
 from abut.io.deck import read_deck
 from abut.io.deck.elements import FACES
 from abut.io.deck.groups import Groups, Piece, pieces
-from abut.io.deck.nodal_constraints import Bonds, bonds
+from abut.io.deck.nodal_constraints import Bonds, axis_notes, bonds
 from abut.io.deck.pretension import cut
 from abut.io.deck.reasons import DeckError, Reasons
 from abut.io.deck.record import Deck, GeneralContact, Numbers, Pair
@@ -66,9 +66,6 @@ from abut.output.options import Output
 from abut.types import Json
 
 AXES = "xyz"
-SAME_WAY = (
-    0.9  # of two surfaces that cannot touch: product of their mean normals (short ones where a surface bends round)
-)
 
 
 @dataclass(frozen=True)
@@ -113,7 +110,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     deck = cut(expanded(deck, is_finite(deck)))
     notes = [*deck.notes, *notes, *overclosure_notes(deck, soft), *finite_notes(deck), *spring_notes(deck)]
     made = pieces(deck)
-    deck = with_parts_coupled(deck, made, notes)
+    deck = with_ties_by_node(with_parts_coupled(deck, made, notes), notes)
     groups = Groups(deck)
     every, stiff = join(deck, made)
     parts = {groups.body(piece.name, piece.elements): piece for piece in every}
@@ -125,7 +122,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
             contacts.append(_contact(deck, groups, pair, hard, notes))
     solids = _solids(deck, {name: piece for name, piece in parts.items() if name not in moving}, plane, reasons)
     rigid, bound = _referenced(deck, groups, moving, plane, reasons)
-    notes += [*_idle(deck, groups), *unlisted_notes(deck), *beside_notes(deck)]
+    notes += [*_idle(deck, groups), *unlisted_notes(deck), *beside_notes(deck), *axis_notes(deck)]
     references = dict(zip([*moving, *(coupling.name for coupling in bound)], reference_nodes(deck)))
     prescribed = _prescribed(deck, groups, parts, plane, references, notes, reasons)
     asked = tables(deck, groups, notes)
@@ -300,14 +297,11 @@ def _check_sides(mesh: Mesh, contact: Contact, pair: Pair) -> None:
     first, second = contact.named
     if first == second:
         return
-    sides = find_sides(mesh, first, second)
-    push = [stress_load(side, np.eye(mesh.dim)).reshape(-1, mesh.dim).sum(axis=0) for side in sides]
-    a, b = (normal / max(surface_area(side), 1e-300) for normal, side in zip(push, sides))
+    a, b = (looks(side) for side in find_sides(mesh, first, second))
     if a @ b > SAME_WAY:
-        card = "*TIE" if pair.tied and pair.adjust == "all" else "*CONTACT PAIR"
         raise DeckError(
             pair.place,
-            f"{card}: '{pair.slave}' and '{pair.master}' look the same way: their bodies overlap; abut "
+            f"*CONTACT PAIR: '{pair.slave}' and '{pair.master}' look the same way: their bodies overlap; abut "
             "needs surfaces that face each other: choose other faces, or join the meshes",
         )
 
