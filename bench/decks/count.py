@@ -39,8 +39,8 @@ REASONS = (
         "the step in a deck of its own",
     ),
     (
-        r"SHELL|BEAM GENERAL|BEAM SECTION|SECTION=|beam and a shell|MEMBRANE|shells and beams|reference of a rigid body.*comes|"
-        r"PRE-TENSION SECTION: ELEMENT",
+        r"SHELL|BEAM GENERAL|BEAM SECTION|SECTION=|beam and a shell|MEMBRANE|shells and beams|"
+        r"reference of a rigid body.*comes|PRE-TENSION SECTION: ELEMENT",
         "shells and beams: layers, other sections, what they share",
         "solids there, or the section by its rectangle",
     ),

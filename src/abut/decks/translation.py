@@ -35,7 +35,7 @@ from abut.errors import InputError
 from abut.io.deck import read_deck
 from abut.io.deck.elements import FACES
 from abut.io.deck.groups import Groups, Piece, pieces
-from abut.io.deck.nodal_constraints import Bonds, axis_notes, bonds
+from abut.io.deck.nodal_constraints import Bonds, bonds
 from abut.io.deck.pretension import cut
 from abut.io.deck.reasons import DeckError, Reasons
 from abut.io.deck.record import Deck, GeneralContact, Numbers, Pair
@@ -122,7 +122,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
             contacts.append(_contact(deck, groups, pair, hard, notes))
     solids = _solids(deck, {name: piece for name, piece in parts.items() if name not in moving}, plane, reasons)
     rigid, bound = _referenced(deck, groups, moving, plane, reasons)
-    notes += [*_idle(deck, groups), *unlisted_notes(deck), *beside_notes(deck), *axis_notes(deck)]
+    notes += [*_idle(deck, groups), *unlisted_notes(deck), *beside_notes(deck)]
     references = dict(zip([*moving, *(coupling.name for coupling in bound)], reference_nodes(deck)))
     prescribed = _prescribed(deck, groups, parts, plane, references, notes, reasons)
     asked = tables(deck, groups, notes)

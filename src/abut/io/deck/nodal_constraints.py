@@ -21,7 +21,6 @@ from abut.io.deck.time_histories import Course, combine, courses, zero
 Vector = NDArray[np.float64]
 NOTHING: Course = ((0.0, 0.0),)
 TINY = 1e-12  # of the largest coefficient: a term that is none
-ON_AXIS = 1e-9  # of a node's distance from the first point of the axis: off it by rounding only
 NEAR = 1e-3  # of the surface: distance within which nodes on two sides of a sector count as the same
 
 Point = tuple[int, int]  # node, axis 0..2
@@ -183,30 +182,13 @@ def _axes(transform: Transform, x: Vector) -> Vector:
     else:
         third = b - a
         first = (x - a) - (x - a) @ third / (third @ third) * third
-    if np.linalg.norm(third) == 0.0 or np.linalg.norm(first) == 0.0:
+    if np.linalg.norm(third) == 0.0 or np.linalg.norm(first) <= 1e-9 * np.abs(x - a).max(initial=1e-300):
         raise DeckError(
             transform.place,
             f"*TRANSFORM: no axes follow from the two points at {x.tolist()}; leave nodes on the axis out",
         )
     first, third = first / np.linalg.norm(first), third / np.linalg.norm(third)
     return _clean(np.stack([first, np.cross(third, first), third]))
-
-
-def axis_notes(deck: Deck) -> list[str]:
-    """Nodes whose radial direction only rounding tells."""
-    notes = []
-    for transform in (t for t in deck.transforms if t.kind == "C"):
-        a, axis = np.array(transform.a), np.array(transform.b) - np.array(transform.a)
-        nodes = np.intersect1d(transform.nodes, deck.nodes)
-        x = coordinates(deck, nodes) - a
-        away = np.linalg.norm(np.cross(x, axis / np.linalg.norm(axis)), axis=1)
-        rounded = nodes[(away > 0.0) & (away <= ON_AXIS * np.abs(x).max(axis=1, initial=0.0))]
-        if len(rounded):
-            notes.append(
-                f"{transform.place}: *TRANSFORM: {len(rounded)} nodes, the first {rounded[0]}, lie on the axis but for the "
-                "rounding of their coordinates, from which their radial direction is taken, as in CalculiX; leave them out"
-            )
-    return notes
 
 
 def _clean(rows: Vector) -> Vector:
