@@ -163,7 +163,7 @@ class Pair:
     """A contact pair or tie. overclosure: HARD, LINEAR, ...; adjust: a distance, "all" for every gap, node numbers, or None;
     clearance: the gap given for all of the surface, None for the one of the mesh; is_tie: of *TIE, with its position
     tolerance (None: the default, that of Abaqus where parameters are its); behaviour: of its
-    overclosure, where that has numbers; bilateral: NO SEPARATION."""
+    overclosure, where that has numbers; bilateral: NO SEPARATION; changing: its law is another one in later steps."""
 
     name: str
     slave: str
@@ -179,6 +179,7 @@ class Pair:
     of_abaqus: bool = False
     behaviour: Behaviour = ()
     bilateral: bool = False
+    changing: bool = False
 
 
 @dataclass(frozen=True)

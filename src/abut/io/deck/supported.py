@@ -53,6 +53,7 @@ READ: dict[str, tuple[str, ...]] = {
     "SURFACE INTERACTION": ("NAME",),
     "FRICTION": ("ROUGH", "LAGRANGE", "ELASTIC SLIP", "SLIP TOLERANCE", "SHEAR TRACTION SLOPE"),
     "CHANGE FRICTION": ("INTERACTION",),
+    "CHANGE SURFACE BEHAVIOR": ("INTERACTION",),
     "SURFACE BEHAVIOR": ("PRESSURE-OVERCLOSURE", "PENALTY", "DIRECT", "AUGMENTED LAGRANGE", "NO SEPARATION"),
     "CONTACT": (),
     "CONTACT INCLUSIONS": ("ALL EXTERIOR",),
@@ -112,7 +113,13 @@ RESTART = (
 )
 MAY_BE_OMITTED = {"NLGEOM"}  # parameters that are read, and may be left out all the same
 COUPLINGS = {"COUPLING", "KINEMATIC", "DISTRIBUTING", "KINEMATICCOUPLING", "DISTRIBUTINGCOUPLING"}
-LEFT_OUT = {"FRICTION", "CHANGEFRICTION", "SPRING", *COUPLINGS}  # cards that are read, and may be left out all the same
+LEFT_OUT = {
+    "FRICTION",
+    "CHANGEFRICTION",
+    "CHANGESURFACEBEHAVIOR",
+    "SPRING",
+    *COUPLINGS,
+}  # cards that are read, and may be left out all the same
 _READ = {key(name): {key(p) for p in parameters} for name, parameters in READ.items()}
 _QUIET = {key(name) for name in QUIET}
 _REFUSED = {key(name): (name, reason) for name, reason in REFUSED.items()}
