@@ -309,6 +309,29 @@ def test_cylindrical_axes(start, tmp_path):
     assert np.allclose(solution.displacement, expected, rtol=0.0, atol=1e-10)
 
 
+@pytest.mark.parametrize(
+    "transform", ["TYPE=C\n0,0,0, 0,0,1.", "TYPE=R\n1,2,.5, -2,1,0."], ids=["cylindrical", "rectangular"]
+)
+def test_forces_along_axes_of_their_own(transform, tmp_path):
+    """The same displacements as under these forces written along x, y and z, node by node."""
+    text = sector(6, 0.3) + RUBBER + "*BOUNDARY\nNSIDE, 1, 3\n"
+    local = np.array([0.5, 1.0, -0.2])
+    nodes = load(tmp_path, text + step("*CLOAD", "NNEXT, 1, 1.")).model.mesh.points
+    members = [int(line.rstrip(",")) for line in text.partition("*NSET, NSET=NNEXT\n")[2].partition("*")[0].split()]
+    lines = []
+    for number in members:
+        x = nodes[number - 1]
+        first = np.array([x[0], x[1], 0.0]) if transform.startswith("TYPE=C") else np.array([1.0, 2.0, 0.5])
+        third = np.array([0.0, 0.0, 1.0]) if transform.startswith("TYPE=C") else np.cross(first, [-2.0, 1.0, 0.0])
+        axes = [first / np.linalg.norm(first), np.zeros(3), third / np.linalg.norm(third)]
+        axes[1] = np.cross(axes[2], axes[0])
+        lines += [f"{number}, {k}, {value!r}" for k, value in enumerate((local @ np.array(axes)).tolist(), start=1)]
+    written = solve(tmp_path, text + step("*CLOAD", *lines)).displacement
+    turned = text + f"*TRANSFORM, NSET=NNEXT, {transform}\n"
+    own = solve(tmp_path, turned + step("*CLOAD", *(f"NNEXT, {k}, {v}" for k, v in enumerate(local.tolist(), start=1))))
+    assert own.displacement == pytest.approx(written, rel=1e-9, abs=1e-12)
+
+
 @pytest.mark.parametrize("sides", ["NEXT, SIDE", "SIDE, NEXT"])
 def test_cyclic_symmetry(sides, tmp_path):
     """A sixth of a ring under pressure inside, plane strain: Lame's displacement, within the error of 8 linear cells."""
