@@ -8,7 +8,8 @@ import pytest
 from abut.cli import main
 from abut.errors import InputError
 from abut.io.deck.cards import key
-from abut.io.deck.supported import NEEDED, PROCEDURES, QUIET, READ, REFUSED
+from abut.io.deck.refused import PARAMETERS, PROCEDURES, REFUSED
+from abut.io.deck.supported import NEEDED, QUIET, READ
 from abut.job import load_job
 from abut.mesh.mesh import Mesh
 from models.decks import BRICKS, HELD, PAIR, PUSH, load, step, write
@@ -42,6 +43,15 @@ def test_other_procedures_are_refused_and_left_out_with_their_step(name, tmp_pat
     with pytest.raises(InputError) as caught:
         load(tmp_path, BRICKS + step(card=f"*{name}"))
     assert "--ignore" not in str(caught.value)  # nothing would be left
+
+
+def test_every_reason_comes_with_a_cure():
+    """After a semicolon, as what to do: a verb, not another "not"."""
+    for name, reason in {**REFUSED, **PARAMETERS}.items():
+        why, _, cure = reason.partition("; ")
+        assert why, name
+        assert len(cure.split()) > 1, name
+        assert not {"not supported", "not read"} & {cure[-len("not supported") :], cure[-len("not read") :]}, name
 
 
 def test_large_displacements_are_solved_or_left_out(tmp_path):

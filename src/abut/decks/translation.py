@@ -8,14 +8,14 @@ from pathlib import Path
 
 import numpy as np
 
-from abut.bodies.loads import stress_load, surface_area
 from abut.contact.overclosure import PressureOverclosure
 from abut.contact.sides import bodies_of, find_sides
 from abut.decks.adjusting import adjusted
 from abut.decks.body_loads import body_loads
 from abut.decks.clearance import bilateral_note, gap_options
-from abut.decks.couplings import couplings, reference_loads, reference_nodes, unlisted_notes
+from abut.decks.couplings import beside_notes, couplings, reference_loads, reference_nodes, unlisted_notes
 from abut.decks.elastic import elastic_law
+from abut.decks.element_notes import element_notes
 from abut.decks.expanded import expanded
 from abut.decks.friction import friction_options, path_notes
 from abut.decks.holds import holds
@@ -29,6 +29,7 @@ from abut.decks.rigid import join, rigid_bodies, with_parts_coupled
 from abut.decks.rubber import of_rubber
 from abut.decks.springs import spring_notes, springs
 from abut.decks.temperatures import history, temperatures
+from abut.decks.tied_nodes import SAME_WAY, looks, with_ties_by_node
 from abut.detection import add_surfaces, find_contacts
 from abut.errors import InputError
 from abut.io.deck import read_deck
@@ -65,9 +66,6 @@ from abut.output.options import Output
 from abut.types import Json
 
 AXES = "xyz"
-SAME_WAY = (
-    0.9  # of two surfaces that cannot touch: product of their mean normals (short ones where a surface bends round)
-)
 
 
 @dataclass(frozen=True)
@@ -108,10 +106,11 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
         reasons.add(error)
     plane, deck = plane_of(deck), with_stiff_beams(deck)
     notes = [f"{block.code}: {block.type.instead}" for block in deck.blocks if block.type.instead]
+    notes += element_notes(deck)
     deck = cut(expanded(deck, is_finite(deck)))
     notes = [*deck.notes, *notes, *overclosure_notes(deck, soft), *finite_notes(deck), *spring_notes(deck)]
     made = pieces(deck)
-    deck = with_parts_coupled(deck, made, notes)
+    deck = with_ties_by_node(with_parts_coupled(deck, made, notes), notes)
     groups = Groups(deck)
     every, stiff = join(deck, made)
     parts = {groups.body(piece.name, piece.elements): piece for piece in every}
@@ -123,7 +122,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
             contacts.append(_contact(deck, groups, pair, hard, notes))
     solids = _solids(deck, {name: piece for name, piece in parts.items() if name not in moving}, plane, reasons)
     rigid, bound = _referenced(deck, groups, moving, plane, reasons)
-    notes += [*_idle(deck, groups), *unlisted_notes(deck)]
+    notes += [*_idle(deck, groups), *unlisted_notes(deck), *beside_notes(deck)]
     references = dict(zip([*moving, *(coupling.name for coupling in bound)], reference_nodes(deck)))
     prescribed = _prescribed(deck, groups, parts, plane, references, notes, reasons)
     asked = tables(deck, groups, notes)
@@ -298,14 +297,11 @@ def _check_sides(mesh: Mesh, contact: Contact, pair: Pair) -> None:
     first, second = contact.named
     if first == second:
         return
-    sides = find_sides(mesh, first, second)
-    push = [stress_load(side, np.eye(mesh.dim)).reshape(-1, mesh.dim).sum(axis=0) for side in sides]
-    a, b = (normal / max(surface_area(side), 1e-300) for normal, side in zip(push, sides))
+    a, b = (looks(side) for side in find_sides(mesh, first, second))
     if a @ b > SAME_WAY:
-        card = "*TIE" if pair.tied and pair.adjust == "all" else "*CONTACT PAIR"
         raise DeckError(
             pair.place,
-            f"{card}: '{pair.slave}' and '{pair.master}' look the same way: their bodies overlap; abut "
+            f"*CONTACT PAIR: '{pair.slave}' and '{pair.master}' look the same way: their bodies overlap; abut "
             "needs surfaces that face each other: choose other faces, or join the meshes",
         )
 

@@ -22,6 +22,7 @@ from abut.io.deck.model_cards import (
     sections,
     transforms,
 )
+from abut.io.deck.multipoint_cards import multipoint_notes
 from abut.io.deck.output_cards import requests
 from abut.io.deck.reasons import DeckError, Reasons
 from abut.io.deck.record import Amplitude, Deck, Prescribed
@@ -56,7 +57,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
     history, known = with_interferences(
         steps(groups, mesh, known, reasons), groups, Scene(mesh, pair_list, known), reasons
     )
-    notes += [*friction_notes(cards), *repeated_members(cards, mesh)]
+    notes += [*friction_notes(cards), *multipoint_notes(cards), *repeated_members(cards, mesh)]
     deck = Deck(
         path=str(path),
         nodes=mesh.nodes,
