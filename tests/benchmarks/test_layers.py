@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from scipy.special import gamma, jv
 
+from abut.benchmarks import BENCHMARKS, run
 from abut.benchmarks.layers import LAYERS, Layer
 
 POWERS, FARTHEST = 10, 200  # of pressures; wave number times half width
@@ -74,3 +75,8 @@ def test_thin_layers() -> None:
         beyond = [solved(body, a)[0] / (depth * a**2) - 1.0 for a in (10.0, 20.0, 40.0)]
         assert 0.0 < beyond[2] < beyond[1] < beyond[0] < 0.3
         assert beyond[1] / beyond[2] == pytest.approx(2.0, rel=0.1)
+
+
+@pytest.mark.parametrize("name", ["layer-cylinder-10-tri6", "layer-ball-2-quad9", "layer-ball-10-quad9"])
+def test_finite_elements(name: str) -> None:
+    assert all(outcome.passed for outcome in run(BENCHMARKS[name]))
