@@ -311,7 +311,7 @@ class Solution:
                                    "work of loads and supports less what is stored and what friction and flow take, over "
                                    "the work of all nodal forces by size"))  # fmt: skip
             if step.flow is not None:
-                model.append(step.flow.check(self.model.finite))
+                model += step.flow.checks(self.model.finite, bool(self.model.loads))
             if step.stress_error is not None:
                 model.append(Check("", "stress error", step.stress_error.largest, STRESS_ERROR,
                                    "estimated error of the elements' stresses in the energy norm, of the whole model "
