@@ -190,6 +190,16 @@ class HoldTable(Table):
     amplitude: Points | None = None
 
 
+class PenetrationTable(Table):
+    """a fluid under pressure that enters a contact where it is open"""
+
+    contact: str
+    source: str | list[Number]
+    value: Number
+    amplitude: Points | None = None
+    name: str = ""
+
+
 class PreloadTable(Table):
     """a section of a body whose two sides are drawn together, as tightening does to a bolt"""
 
@@ -359,6 +369,7 @@ class JobFile(Table):
     preloads: list[PreloadTable] = []
     springs: list[SpringTable] = []
     holds: list[HoldTable] = []
+    penetrations: list[PenetrationTable] = []
     probes: list[ProbeTable] = []
     steps: list[StepTable] = []
     frequencies: FrequenciesTable | None = None

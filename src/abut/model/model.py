@@ -41,6 +41,7 @@ from abut.model.coupling import Coupling, check_couplings, moving_points
 from abut.model.hold import STAY, Hold, check_holds
 from abut.model.kinematics import check_finite, check_kinematics
 from abut.model.modes import Buckling, Frequencies
+from abut.model.penetration import Penetration, check_penetrations
 from abut.model.physics import TEMPERATURE, Physics, dofs_of
 from abut.model.preload import Preload, cut_sections
 from abut.model.probe import Probe, check_probes
@@ -56,7 +57,7 @@ PLANES = ("strain", "stress", "axisymmetric")
 RECORDS: dict[str, tuple[type, ...]] = {  # what the lists of a model are of
     "solids": (Solid,), "supports": (Support,), "loads": get_args(Load), "contacts": (Contact,), "equations": (Equation,),
     "rigid": (Rigid,), "probes": (Probe,), "rotations": (Rotation,), "couplings": (Coupling,), "preloads": (Preload,),
-    "springs": (Spring,), "holds": (Hold,), "modes": (Frequencies, Buckling),
+    "springs": (Spring,), "holds": (Hold,), "penetrations": (Penetration,), "modes": (Frequencies, Buckling),
 }  # fmt: skip
 
 
@@ -100,8 +101,8 @@ class Model:
         Points that move with a reference.
     preloads : sequence of Preload
         Bolts that are tightened; the mesh is cut open at their sections.
-    springs, holds : sequences of Spring and of Hold
-        Springs to the ground, between points, beds under surfaces; supports that come or go.
+    springs, holds, penetrations : sequences of Spring, of Hold and of Penetration
+        Springs to ground, between points, beds; supports that come or go; fluids that enter open contacts.
     physics : sequence of abut.model.physics.Physics
         Fields beside displacements, with terms of their own in the balance; on one process, with the direct solver.
     modes : sequence of Frequencies and Buckling
@@ -147,6 +148,7 @@ class Model:
     preloads: Sequence[Preload] = ()
     springs: Sequence[Spring] = ()
     holds: Sequence[Hold] = ()
+    penetrations: Sequence[Penetration] = ()
     physics: Sequence[Physics] = ()
     modes: Sequence[Frequencies | Buckling] = ()
 
@@ -168,6 +170,7 @@ class Model:
         self._check_contacts()
         check_springs(self.mesh, self.springs)
         object.__setattr__(self, "holds", check_holds(self.mesh, self.holds))
+        object.__setattr__(self, "penetrations", check_penetrations(self.mesh, self.penetrations, self.contacts))
         check_kinematics(self.kinematics, self.solids)
         moving = moving_points(self.mesh, self.rigid, self.couplings)
         check_rotations(self.mesh, self.rotations, self.supports, moving, self.kinematics)
@@ -226,7 +229,7 @@ class Model:
     def histories(self) -> tuple[History, ...]:
         """The different histories of everything prescribed, the ramp first."""
         given = (*self.supports, *self.loads, *self.equations, *self.rigid, *self.contacts, *self.rotations)
-        amplitudes = [item.amplitude for item in (*given, *self.preloads, *self.couplings)]
+        amplitudes = [item.amplitude for item in (*given, *self.preloads, *self.couplings, *self.penetrations)]
         friction = [contact.friction_amplitude for contact in self.contacts]
         of_rigid = (history for body in self.referenced for history in body.amplitudes.values())
         others = (history for item in self.physics for history in item.amplitudes)
@@ -237,7 +240,7 @@ class Model:
         """Time at the end of each load step: those of ``solve``, and where the way matters (friction, large displacements,
         materials that are not linear) the corners of all histories, which a step across would never see."""
         rubs = any(contact.frictional for contact in self.contacts)
-        if not (rubs or self.finite) and all(material.constant for material in self.materials.values()):
+        if not (rubs or self.finite or self.penetrations) and all(material.constant for material in self.materials.values()):
             return with_corners(self.solve.ends, self.locking)
         return with_corners(self.solve.ends, (*self.histories, *self.locking))
 
