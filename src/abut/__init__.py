@@ -77,8 +77,8 @@ __all__ = [
     "InputError", "Integration", "LinearElastic", "Mesh", "Model", "Moment", "MooneyRivlin", "NeoHooke", "NodalForce",
     "Ogden", "Orthotropic", "Output", "OverTemperature", "Penetration", "Plastic", "Preload", "Pressure",
     "PressureOverclosure", "Probe", "Rigid", "Rotation", "SingularModelError", "Solid", "Solution", "SolveOptions",
-    "Spring", "Support", "Temperature", "Term", "Traction", "Yeoh", "add_surfaces", "check", "find_contacts", "plot", "solve", "to_pyvista", "write",
-    "write_report",
+    "Spring", "Support", "Temperature", "Term", "Traction", "Yeoh", "add_surfaces", "check", "find_contacts", "plot",
+    "solve", "to_pyvista", "write", "write_report",
 ]  # fmt: skip
 
 

@@ -26,9 +26,7 @@ def penetration_results(problem: Discretised, state: State, displacement: Array)
     found = {}
     for i, (wetting, wet) in enumerate(zip(term.wettings, term.begun(state.history.of(TERM)))):
         area = area_weights(replace(term.pairs[i].contactor, points=points))
-        forces = [
-            force.reshape(points.shape).sum(axis=0) for force, _ in term.on_sides(i, wet, state.time, points)
-        ]
+        forces = [force.reshape(points.shape).sum(axis=0) for force, _ in term.on_sides(i, wet, state.time, points)]
         wetted = float(area @ wet.shares[:, 0])
         pressure = wetting.penetration.pressure(state.time)
         found[wetting.penetration.name] = PenetrationResult(pressure, wetted, wetted / float(area.sum()), *forces)

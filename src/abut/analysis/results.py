@@ -17,8 +17,8 @@ from abut.analysis.finite_energy import FiniteActing, finite_energy
 from abut.analysis.flow import flow, remembered
 from abut.analysis.known_stress import known_stress
 from abut.analysis.moved import largest_turn, slid
-from abut.analysis.overlap import covered_elsewhere, overlaps
 from abut.analysis.node_fields import node_fields
+from abut.analysis.overlap import covered_elsewhere, overlaps
 from abut.analysis.penetrations import penetration_results
 from abut.analysis.preloads import preload_results
 from abut.analysis.stress_error import stress_error

@@ -26,6 +26,7 @@ from abut.benchmarks import (
     loads,
     onset,
     patch,
+    penetration,
     plastic,
     preloads,
     punches,
@@ -65,5 +66,6 @@ BENCHMARKS: dict[str, Benchmark] = {
         *preloads.BENCHMARKS,
         *loads.BENCHMARKS,
         *holds.BENCHMARKS,
+        *penetration.BENCHMARKS,
     )
 }

@@ -28,9 +28,9 @@ def follower_pressure(
     """Nodal forces (dim n_points,) of a pressure (force per area, positive into the body) on a surface at its present
     positions, and their derivative by these (dim n_points, dim n_points) CSR.
 
-    value: a number, or a function of the positions ``undeformed``, (n_points, dim), points (n, dim) -> (n,); share: (n_facets, 9)
-    factors of it at the corners of the facets, linear between. Raises
-    InputError, beginning with ``name``, for a function that does not return finite numbers."""
+    value: a number, or a function of the positions ``undeformed``, (n_points, dim), points (n, dim) -> (n,); share:
+    (n_facets, 9) factors of it at the corners of the facets, linear between. Raises InputError, beginning with ``name``,
+    for a function that does not return finite numbers."""
     dim, n = surface.dim, surface.points.size
     load, slopes = np.zeros(surface.points.shape), sp.csr_matrix((n, n))
     for code in np.unique(surface.kinds):

@@ -303,8 +303,8 @@ MEANINGS: dict[str, dict[str, str]] = {
     },
     "PenetrationTable": {
         "contact": "name of the contact, of which both surfaces feel the fluid wherever it gets",
-        "source": "where the fluid comes from: a surface or node set that meets one of the contact's sides, or a point, whose "
-        "nearest node counts",
+        "source": "where the fluid comes from: a surface or node set that meets one of the contact's sides, or a point, "
+        "whose nearest node counts",
         "value": "pressure of the fluid, > 0; it gets through what is open, and what is pressed by less [force/length^2]",
         "name": "a name of your choice, for results; left out: that of the contact",
     },

@@ -15,8 +15,10 @@ from abut.errors import InputError
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
 from abut.model.conditions import History, check_amplitude, vector
-from abut.model.contact import Contact
+from abut.model.contact import PRESSURES, Contact
 from abut.types import Array
+
+OF_FACETS = ("P0", "P1-discontinuous", "P2-discontinuous")  # pressure spaces whose functions belong to facets
 
 
 @dataclass(frozen=True)
@@ -89,8 +91,14 @@ def check_penetrations(
         contact = by_name[item.contact]
         if contact.kind != "contact" or contact.method != "segment-to-segment":
             raise InputError(
-                f"{where}.contact: contact '{item.contact}' ({contact.kind}, {contact.method}) cannot open for a fluid; name "
-                'one of kind = "contact", method = "segment-to-segment"'
+                f"{where}.contact: contact '{item.contact}' ({contact.kind}, {contact.method}) cannot open for a fluid; "
+                'name one of kind = "contact", method = "segment-to-segment"'
+            )
+        if contact.pressure in OF_FACETS:
+            raise InputError(
+                f'{where}.contact: pressures of single facets (pressure = "{contact.pressure}") have no edge that a fluid '
+                f"could come to; leave pressure out in contact '{item.contact}', or take one of "
+                f"{', '.join(name for name in PRESSURES if name not in OF_FACETS)}"
             )
         if isinstance(item.source, str):
             checks.known(item.source, [*mesh.surfaces, *mesh.node_sets], f"{where}.source", "surface or node set")
@@ -105,9 +113,7 @@ def check_penetrations(
 
 def corners(surface: Surface) -> NDArray[np.int64]:
     """Points that are corners of facets, sorted."""
-    found = [
-        surface.nodes[surface.kinds == code, : BY_CODE[code].corners].ravel() for code in np.unique(surface.kinds)
-    ]
+    found = [surface.nodes[surface.kinds == code, : BY_CODE[code].corners].ravel() for code in np.unique(surface.kinds)]
     return np.unique(np.concatenate([np.zeros(0, np.int64), *found])).astype(np.int64)
 
 

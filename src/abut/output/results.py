@@ -259,9 +259,7 @@ def _step_summary(step: Step) -> Json:
         "rigid": {
             body: {name: value.tolist() for name, value in vars(result).items()} for body, result in step.rigid.items()
         },
-        **({"preloads": {name: _numbers(result) for name, result in step.preloads.items()}} if step.preloads else {}),
-        **({"springs": {name: force.tolist() for name, force in step.springs.items()}} if step.springs else {}),
-        **({"penetrations": {name: _numbers(result) for name, result in step.penetrations.items()}} if step.penetrations else {}),
+        **_carried(step),
         "probes": probes.summary(step),
         "cycling": {name: facets.tolist() for name, facets in step.cycling.items()},
         "unsettled": [
@@ -274,6 +272,16 @@ def _step_summary(step: Step) -> Json:
             for place in unsettled(step)
         ],
     }
+
+
+def _carried(step: Step) -> Json:
+    """What preloads, springs and fluids exert, where there are any."""
+    every = {
+        "preloads": {name: _numbers(result) for name, result in step.preloads.items()},
+        "springs": {name: force.tolist() for name, force in step.springs.items()},
+        "penetrations": {name: _numbers(result) for name, result in step.penetrations.items()},
+    }
+    return {name: results for name, results in every.items() if results}
 
 
 def _numbers(result: PreloadResult | PenetrationResult) -> Json:

@@ -105,9 +105,7 @@ class Discretised:
     def shares(self, before: State, there: Motion, now: Motion, frame: Frame) -> list[Share]:
         """Of every term at ``now``, which follows ``there``, with the history of ``before``, in a frame."""
         return [
-            term.evaluate(
-                *(replace(at, history=before.history.of(term.name), wet=frame.wet) for at in (there, now))
-            )
+            term.evaluate(*(replace(at, history=before.history.of(term.name), wet=frame.wet) for at in (there, now)))
             for term in self.terms
         ]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -52,13 +52,16 @@ class Penetrations:
         """Nodal forces (dim n_points,) of one fluid on contactor and target, and their derivatives; points: (n_points, dim)
         where they are."""
         pressure, pair = self.wettings[i].penetration.pressure(time), self.pairs[i]
-        shares = (at_corners(pair.contactor, wet.shares[:, 0], not pair.space.ordinary), at_corners(pair.target, wet.shares[:, 1]))
+        shares = (
+            at_corners(pair.contactor, wet.shares[:, 0], not pair.space.ordinary),
+            at_corners(pair.target, wet.shares[:, 1]),
+        )
         return [
             follower_pressure(replace(side, points=points), pressure, share=share)
             for side, share in zip((pair.contactor, pair.target), shares)
         ]
 
-    def begun(self, history: dict[str, Array]) -> tuple[Wet, ...]:
+    def begun(self, history: Mapping[str, Array]) -> tuple[Wet, ...]:
         """How far fluids have got in a converged state with such a history."""
         count = len(self.model.mesh.points)
         return tuple(

@@ -48,23 +48,19 @@ class Wetting:
             _middles(surface, count),
         )  # fmt: skip
 
-    def reached(self, pair: Pair, was: Wet, multipliers: Array, closed: NDArray[np.bool_], time: float) -> NDArray[np.bool_]:
+    def reached(
+        self, pair: Pair, was: Wet, multipliers: Array, closed: NDArray[np.bool_], time: float
+    ) -> NDArray[np.bool_]:
         """(n_points,) corners of the contactor that the fluid reaches from its source, through what is open, or pressed by
         less than its own pressure; ``was``: how far it has got where multipliers and status are these, of all the pair's."""
         pressure = self.penetration.pressure(time)
         if pressure <= 0.0:
             return np.zeros_like(was.nodes)
-        there = pair.space.node >= 0
-        nodes = pair.space.node[there]
-        size = len(was.nodes)
-        contact = np.where(closed[pair.normal], multipliers[pair.normal], 0.0)[there]
+        nodes, size, touching = pair.space.node, len(was.nodes), closed[pair.normal]
         most = np.full(size, -np.inf)
-        np.maximum.at(most, nodes, contact)
+        np.maximum.at(most, nodes, np.where(touching, multipliers[pair.normal], 0.0))
         shut = np.zeros(size, dtype=bool)
-        shut[nodes[closed[pair.normal][there]]] = True
-        for facet_nodes, k in _of_facets(pair):
-            shut[facet_nodes] |= bool(closed[pair.normal][k])
-            most[facet_nodes] = np.maximum(most[facet_nodes], multipliers[pair.normal][k])
+        shut[nodes[touching]] = True
         total = most + pressure * was.nodes
         enters = ~shut | (total < pressure * (1.0 - SAME)) | (was.nodes & was.left)
         some = np.zeros(size, dtype=bool)
@@ -123,20 +119,6 @@ def _dual(count: int) -> Array:
     return np.kron(line, line)[np.ix_(around, around)]
 
 
-def _of_facets(pair: Pair) -> list[tuple[NDArray[np.int64], int]]:
-    """Points of the facet of each function that belongs to a facet alone, with its number."""
-    alone = np.flatnonzero(pair.space.node < 0)
-    if not len(alone):
-        return []
-    rows = pair.space.plain.tocsc()
-    found = []
-    for k in alone:
-        facets = np.unique(rows.indices[rows.indptr[k] : rows.indptr[k + 1]] // 9)
-        nodes = pair.contactor.nodes[facets]
-        found.append((np.unique(nodes[nodes >= 0]).astype(np.int64), int(k)))
-    return found
-
-
 def _links(surface: Surface, count: int) -> Sparse:
     """(count, count) ones between corners of one facet."""
     rows, columns = [], []
@@ -152,7 +134,8 @@ def _links(surface: Surface, count: int) -> Sparse:
 def _middles(surface: Surface, count: int) -> Sparse:
     """(count, count): of each point of the surface the corners whose mean it is."""
     at_corners = corners(surface)
-    rows, columns = [at_corners], [at_corners]
+    rows: list[Array] = [at_corners]
+    columns: list[Array] = [at_corners]
     for code in np.unique(surface.kinds):
         cell = BY_CODE[code]
         nodes = surface.nodes[surface.kinds == code, : cell.nodes]

@@ -12,6 +12,7 @@ from abut.solution.state import History, Largest, State
 
 __all__ = [
     "Check", "ContactResult", "Energy", "Flips", "Flow", "FrictionResult", "History", "Iteration", "Largest",
-    "ModesResult", "Observer", "OnStep", "PenetrationResult", "Phase", "PreloadResult", "PressureStatistics", "ProbeResult", "Resultant",
+    "ModesResult", "Observer", "OnStep", "PenetrationResult", "Phase", "PreloadResult", "PressureStatistics", "ProbeResult",
+    "Resultant",
     "RigidResult", "Saved", "SavedPart", "Solution", "State", "Step",
 ]  # fmt: skip
