@@ -36,6 +36,7 @@ if TYPE_CHECKING:
         Model,
         Moment,
         NodalForce,
+        Penetration,
         Preload,
         Pressure,
         Probe,
@@ -74,10 +75,10 @@ __all__ = [
     "AbutError", "Amplitude", "Anisotropic", "ArrudaBoyce", "Axes", "BodyForce", "Buckling", "Centrifugal", "Contact",
     "ConvergenceError", "Coupling", "Equation", "Force", "FoundContact", "Frequencies", "Gravity", "Hencky", "Hold",
     "InputError", "Integration", "LinearElastic", "Mesh", "Model", "Moment", "MooneyRivlin", "NeoHooke", "NodalForce",
-    "Ogden", "Orthotropic", "Output", "OverTemperature", "Plastic", "Preload", "Pressure", "PressureOverclosure", "Probe",
-    "Rigid", "Rotation", "SingularModelError", "Solid", "Solution", "SolveOptions", "Spring", "Support", "Temperature",
-    "Term", "Traction", "Yeoh", "add_surfaces", "check", "find_contacts", "plot", "solve", "to_pyvista", "write",
-    "write_report",
+    "Ogden", "Orthotropic", "Output", "OverTemperature", "Penetration", "Plastic", "Preload", "Pressure",
+    "PressureOverclosure", "Probe", "Rigid", "Rotation", "SingularModelError", "Solid", "Solution", "SolveOptions",
+    "Spring", "Support", "Temperature", "Term", "Traction", "Yeoh", "add_surfaces", "check", "find_contacts", "plot",
+    "solve", "to_pyvista", "write", "write_report",
 ]  # fmt: skip
 
 

@@ -20,7 +20,7 @@ ERRORS = {name for name in abut.__all__ if isinstance(getattr(abut, name), type)
 RESULTS = {"FoundContact", "Solution"}  # abut makes these
 LISTS = (
     "solids", "supports", "loads", "contacts", "equations", "rigid", "probes", "rotations", "couplings", "preloads",
-    "springs", "holds",
+    "springs", "holds", "penetrations",
 )  # fmt: skip
 
 BLOCKS = {"a": make.rectangle([0, 2], [0, 1], cells=[2, 1]), "b": make.rectangle([0, 2], [1, 2], cells=[2, 1])}
@@ -31,7 +31,7 @@ MODEL = abut.Model(
     [abut.Solid("a", STEEL), abut.Solid("b", STEEL)],
     supports=[abut.Support("a.bottom", x=0, y=0), abut.Support("b.left", x=0)],
     loads=[abut.Pressure("b.top", 1.0)],
-    contacts=[abut.Contact("b.bottom", "a.top")],
+    contacts=[abut.Contact("b.bottom", "a.top", name="c")],
     plane="strain",
 )
 
@@ -72,6 +72,7 @@ VALID: dict[str, tuple[dict[str, Any], Callable[[Any], object]]] = {  # argument
     "Output": ({}, kept),
     "OverTemperature": ({"temperatures": [0.0, 1.0], "materials": [STEEL, STEEL], "initial_temperature": 0.0}, kept),
     "Plastic": ({"young": 1.0, "poisson": 0.3, "yield_stress": 1.0}, kept),
+    "Penetration": ({"contact": "c", "source": "a.top", "value": 1.0}, within("penetrations")),
     "Preload": ({"name": "p", "surface": "b.left", "force": 1.0}, within("preloads")),
     "Pressure": ({"on": "b.right", "value": 1.0}, within("loads")),
     "PressureOverclosure": ({"points": [(0, 0), (1, 1)]}, kept),

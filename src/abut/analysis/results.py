@@ -17,7 +17,9 @@ from abut.analysis.finite_energy import FiniteActing, finite_energy
 from abut.analysis.flow import flow, remembered
 from abut.analysis.known_stress import known_stress
 from abut.analysis.moved import largest_turn, slid
+from abut.analysis.node_fields import node_fields
 from abut.analysis.overlap import covered_elsewhere, overlaps
+from abut.analysis.penetrations import penetration_results
 from abut.analysis.preloads import preload_results
 from abut.analysis.stress_error import stress_error
 from abut.analysis.surface_stress import normal_stress
@@ -39,6 +41,7 @@ from abut.problem.follower_loads import FollowerLoads
 from abut.problem.held_motions import HeldMotions, held_force
 from abut.problem.holds import Holds
 from abut.problem.pair import Pair
+from abut.problem.penetrations import Penetrations
 from abut.problem.preloads import LockedPreloads
 from abut.problem.problem import ContactProblem
 from abut.problem.rigid_bodies import RigidBody
@@ -143,7 +146,8 @@ def step_result(
         turn=_turn(model, end.nodal),
         energy=work if strained else None,
         stress_error=stress_error(solids, end.nodal, sampled, values, contacts) if strained else None,
-        remembered={**remembered(solids, end.motion.history), **_at_nodes(model, end.motion)},
+        remembered={**remembered(solids, end.motion.history), **node_fields(problem, end.motion, state)},
+        penetrations=penetration_results(problem, state, end.displacement),
         flow=end.flow,
         preloads=_preloads(end, linked),
         springs=_springs(end),
@@ -175,7 +179,7 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
     internal = known[bodies.name] if bodies.name in known else bodies.evaluate(motion, motion).force
     following = np.zeros_like(displacement)
     for term in problem.terms:
-        if isinstance(term, FollowerLoads) or term.name in problem.own:
+        if isinstance(term, (FollowerLoads, Penetrations)) or term.name in problem.own:
             following -= balance.forces[term.name][: len(following)]
     locked = np.zeros_like(displacement)
     if LockedPreloads.name in balance.forces:
@@ -193,12 +197,6 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
         problem, balance, state, motion, displacement, pressures, internal, loads, reaction, following, locked, sprung,
         held, cycling, flow(problem.model.deformable, motion.history), supports,
     )  # fmt: skip
-
-
-def _at_nodes(model: Model, motion: Motion) -> dict[str, NDArray[np.float64]]:
-    """Fields beside displacements that stand at nodes, (n_points,) or (n_points, components)."""
-    at_nodes = [field.name for field in model.dofs.fields if field.at == "nodes"]
-    return {k: v[:, 0] if v.shape[1] == 1 else v for k, v in motion.fields.items() if k in at_nodes}
 
 
 def _energy(

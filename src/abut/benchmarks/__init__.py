@@ -27,6 +27,7 @@ from abut.benchmarks import (
     loads,
     onset,
     patch,
+    penetration,
     plastic,
     preloads,
     punches,
@@ -67,5 +68,6 @@ BENCHMARKS: dict[str, Benchmark] = {
         *preloads.BENCHMARKS,
         *loads.BENCHMARKS,
         *holds.BENCHMARKS,
+        *penetration.BENCHMARKS,
     )
 }

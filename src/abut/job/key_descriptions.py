@@ -35,6 +35,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "preloads": "bolts that are tightened: sections of bodies whose sides are drawn together",
         "springs": "springs to the ground, between points, and beds under surfaces",
         "holds": "supports that come or go on the way",
+        "penetrations": "fluids under pressure that enter contacts wherever these are open",
         "rotations": "surfaces, node sets and bodies that turn about an axis; not with small kinematics",
         "probes": "points, lines and sets of nodes whose results are listed for every step",
         "steps": "parts of the time, one after the other, whose names stand for times",
@@ -299,6 +300,13 @@ MEANINGS: dict[str, dict[str, str]] = {
         "until": "time up to which it acts; left out: to the end",
         "released": "time at which its force is gone; left out: the end",
         "amplitude": "of x, y, z over time; left out: from 0 at since to 1 at reached",
+    },
+    "PenetrationTable": {
+        "contact": "name of the contact, of which both surfaces feel the fluid wherever it gets",
+        "source": "where the fluid comes from: a surface or node set that meets one of the contact's sides, or a point, "
+        "whose nearest node counts",
+        "value": "pressure of the fluid, > 0; it gets through what is open, and what is pressed by less [force/length^2]",
+        "name": "a name of your choice, for results; left out: that of the contact",
     },
     "PreloadTable": {
         "name": "a name of your choice, used in messages and results",

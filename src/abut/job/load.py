@@ -34,6 +34,7 @@ from abut.model import (
     Hold,
     Load,
     Model,
+    Penetration,
     Preload,
     Probe,
     Rigid,
@@ -162,6 +163,7 @@ def _model(file: JobFile, folder: Path, refine: int) -> tuple[Model, Resolved]:
         preloads=[Preload(**values(p, f"preloads[{i}]")) for i, p in enumerate(file.preloads)],
         springs=[Spring(**values(s, f"springs[{i}]")) for i, s in enumerate(file.springs)],
         holds=[Hold(**values(h, f"holds[{i}]")) for i, h in enumerate(file.holds)],
+        penetrations=[Penetration(**values(p, f"penetrations[{i}]")) for i, p in enumerate(file.penetrations)],
         probes=[Probe(**values(probe, f"probes[{i}]")) for i, probe in enumerate(file.probes)],
         modes=[
             *([] if file.frequencies is None else [Frequencies(**file.frequencies.model_dump())]),

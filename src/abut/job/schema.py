@@ -13,7 +13,7 @@ from abut.job.load_tables import LOAD
 from abut.job.material_tables import MATERIAL, AxesTable
 from abut.job.run_tables import BUCKLING, FREQUENCIES, SOLVE, OutputTable, StepTable
 from abut.job.table import Number, OneOf, Points, Table, Time, Varying
-from abut.model import Hold, Preload, Rotation, Spring
+from abut.model import Hold, Penetration, Preload, Rotation, Spring
 from abut.model.contact import GEOMETRIES, KINDS, LAWS, METHODS, PRESSURES, RULES, Contact, Integration
 from abut.model.coupling import KINDS as COUPLINGS
 from abut.model.coupling import Coupling
@@ -156,6 +156,9 @@ HOLD = table_of(
     {**dict.fromkeys("xyz", Led), "since": Time, **dict.fromkeys(("reached", "until", "released"), Time | None)},
     "a support that comes or goes on the way",
 )
+PENETRATION = table_of(
+    Penetration, {"source": str | list[Number]}, "a fluid under pressure that enters a contact where it is open"
+)
 
 
 class IntegrationTable(Table):
@@ -223,6 +226,7 @@ class JobFile(Table):
     preloads: list[Annotated[Table, Of(PRELOAD)]] = []
     springs: list[Annotated[Table, Of(SPRING)]] = []
     holds: list[Annotated[Table, Of(HOLD)]] = []
+    penetrations: list[Annotated[Table, Of(PENETRATION)]] = []
     probes: list[ProbeTable] = []
     steps: list[StepTable] = []
     frequencies: Annotated[Table, Of(FREQUENCIES)] | None = None

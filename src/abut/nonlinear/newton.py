@@ -22,7 +22,8 @@ from abut.solution.state import State
 
 @dataclass(frozen=True)
 class Task:
-    """A load step to solve. before: the last converged state; limit: of iterations; observe: called with each of them."""
+    """A load step to solve. before: the last converged state; limit: of iterations; observe: called with each of them;
+    given: a frame other than that which begins there."""
 
     problem: Problem
     before: State
@@ -30,11 +31,12 @@ class Task:
     increment: Increment
     limit: int
     observe: Callable[[Iteration], None]
+    given: Frame | None = None
 
     @cached_property
     def frame(self) -> Frame:
-        """What is fixed during the step."""
-        return self.problem.frame(self.before)
+        """What is fixed during the step: ``given``, or that which begins at ``before``."""
+        return self.problem.frame(self.before) if self.given is None else self.given
 
 
 def newton(

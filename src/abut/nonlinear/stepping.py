@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from abut.linear.solver import LinearSolver, Prepared
 from abut.nonlinear.iteration import Increment
 from abut.nonlinear.load_step import Attempt, load_step
 from abut.nonlinear.march import Begin, Control
 from abut.nonlinear.newton import Task
+from abut.nonlinear.one_step import UNSTEADY
 from abut.nonlinear.pace import Pace
 from abut.problem.problem import ContactProblem, Problem
 from abut.solution.state import State
@@ -37,7 +39,18 @@ class SmallSteps:
         condensed, prepared = self._ready
         increment = Increment(begin.number, begin.before.largest, self._control.settings)
         task = Task(condensed, begin.before, self._solver, increment, self._control.limit, self._control.observe)
-        return [load_step(task, pace.end, prepared)]
+        attempt = load_step(task, pace.end, prepared)
+        done = attempt.iterations
+        for _ in range(self._control.settings.steps.spreads if task.frame.wet else 0):
+            frame = self._problem.settled(begin.before, task.frame, attempt.state) if attempt.converged else task.frame
+            if frame is task.frame:
+                return [replace(attempt, iterations=done)]
+            task = replace(task, given=frame)
+            attempt = load_step(task, pace.end, prepared)
+            done += attempt.iterations
+        if task.frame.wet:
+            return [replace(attempt, iterations=done, converged=False, reason=UNSTEADY)]
+        return [attempt]
 
     def replace(self, solver: LinearSolver) -> None:
         """As in ``Stepper``: for all steps to come."""

@@ -37,7 +37,7 @@ from abut.output.lock import Lock
 from abut.output.modes import modes_summary, names, write_modes
 from abut.output.options import EVERYTHING, Output, single
 from abut.report import Origin, write_report
-from abut.solution import PreloadResult, Solution, Step
+from abut.solution import PenetrationResult, PreloadResult, Solution, Step
 from abut.solution.grids import contact_grid
 from abut.types import Json
 
@@ -259,8 +259,7 @@ def _step_summary(step: Step) -> Json:
         "rigid": {
             body: {name: value.tolist() for name, value in vars(result).items()} for body, result in step.rigid.items()
         },
-        **({"preloads": {name: _preload(result) for name, result in step.preloads.items()}} if step.preloads else {}),
-        **({"springs": {name: force.tolist() for name, force in step.springs.items()}} if step.springs else {}),
+        **_carried(step),
         "probes": probes.summary(step),
         "cycling": {name: facets.tolist() for name, facets in step.cycling.items()},
         "unsettled": [
@@ -275,7 +274,17 @@ def _step_summary(step: Step) -> Json:
     }
 
 
-def _preload(result: PreloadResult) -> Json:
+def _carried(step: Step) -> Json:
+    """What preloads, springs and fluids exert, where there are any."""
+    every = {
+        "preloads": {name: _numbers(result) for name, result in step.preloads.items()},
+        "springs": {name: force.tolist() for name, force in step.springs.items()},
+        "penetrations": {name: _numbers(result) for name, result in step.penetrations.items()},
+    }
+    return {name: results for name, results in every.items() if results}
+
+
+def _numbers(result: PreloadResult | PenetrationResult) -> Json:
     return {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in vars(result).items()}
 
 

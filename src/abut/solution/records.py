@@ -22,6 +22,7 @@ from abut.solution.energy import Energy
 from abut.solution.flow import Flow
 from abut.solution.idle import idle_contacts
 from abut.solution.modes import ModesResult
+from abut.solution.penetrations import PenetrationResult
 from abut.solution.preloads import PreloadResult, preload_checks, weak_checks
 from abut.solution.progress import Iteration
 from abut.solution.run_checks import run_checks
@@ -124,6 +125,7 @@ class Step:
     flow: Flow | None = None  # None where no material yields
     preloads: Mapping[str, PreloadResult] = field(default_factory=dict)
     springs: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)  # force (dim,) on what each is on
+    penetrations: Mapping[str, PenetrationResult] = field(default_factory=dict)
     nodal_reaction: NDArray[np.float64] | None = None  # (n_points, dim) of supports and links
 
     def __repr__(self) -> str:
