@@ -21,6 +21,7 @@ from abut.model.hold import STAY, Hold
 from abut.model.kinematics import KINEMATICS
 from abut.model.probe import QUANTITIES
 from abut.model.step_choice import WORDS as STEPS
+from abut.thin.records import Beam, Shell
 from abut.types import Json
 
 HISTORY = "pairs of time (0 to 1 over all steps) and factor; linear between; left out: the factor is the time"
@@ -68,9 +69,26 @@ class BodyTable(BaseModel):
     kind: str
 
 
+class ShellTable(Table):
+    """a group of surface cells that its thickness makes solid"""
+
+    thickness: Number
+    offset: Number = Shell.offset
+
+
+class BeamTable(Table):
+    """a group of lines that a rectangular section makes solid"""
+
+    widths: list[Number]
+    direction: list[Number] = list(Beam.direction)
+    offsets: list[Number] = list(Beam.offsets)
+
+
 class MeshTable(Table):
     file: str | None = None
     bodies: dict[str, BodyTable] = {}
+    shells: dict[str, ShellTable] = {}
+    beams: dict[str, BeamTable] = {}
 
 
 class ModelTable(Table):
@@ -90,6 +108,9 @@ class SupportTable(Table):
     x: Varying = None
     y: Varying = None
     z: Varying = None
+    rx: Varying = None
+    ry: Varying = None
+    rz: Varying = None
     normal: Number | None = None
     amplitude: Points | None = None
     axes: AxesTable | None = None
@@ -256,6 +277,8 @@ class NodalForceTable(VectorTable):
     """force at each node of the set"""
 
     kind: Literal["nodal-force"]
+    value: list[Number] = [0.0, 0.0, 0.0]
+    moment: list[Number] | None = None
 
 
 class TemperatureTable(ScalarTable):
