@@ -17,7 +17,7 @@ from abut.mesh import make
 BARE = (AttributeError, KeyError, IndexError, TypeError, ValueError)
 NOTHING = (None, 3, "", 3.5, [], {})  # what a user may have in a variable that should hold something else
 ERRORS = {name for name in abut.__all__ if isinstance(getattr(abut, name), type) and "Error" in name}
-RESULTS = {"FoundContact", "Solution", "Thick"}  # abut makes these
+RESULTS = {"FoundContact", "MidSurface", "Solution", "Thick"}  # abut makes these
 LISTS = (
     "solids", "supports", "loads", "contacts", "equations", "rigid", "probes", "rotations", "couplings", "preloads",
     "springs", "holds",
@@ -97,7 +97,14 @@ VALID: dict[str, tuple[dict[str, Any], Callable[[Any], object]]] = {  # argument
     "check": ({"model": MODEL}, kept),
     "find_contacts": ({"mesh": MESH}, kept),
 }  # fmt: skip
-OF_SOLUTIONS = {"plot", "solve", "to_pyvista", "write", "write_report"}  # whose other arguments take a solution
+OF_SOLUTIONS = {
+    "mid_surface",
+    "plot",
+    "solve",
+    "to_pyvista",
+    "write",
+    "write_report",
+}  # whose other arguments take a solution
 
 
 def sound(call: Callable[[], object], what: str) -> None:

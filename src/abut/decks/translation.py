@@ -33,7 +33,7 @@ from abut.decks.temperatures import history, temperatures
 from abut.detection import add_surfaces, find_contacts
 from abut.errors import InputError
 from abut.io.deck import read_deck
-from abut.io.deck.elements import FACES
+from abut.io.deck.elements import FACES, SHELLS
 from abut.io.deck.groups import Groups, Piece, pieces
 from abut.io.deck.nodal_constraints import bonds
 from abut.io.deck.pretension import cut
@@ -128,6 +128,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     notes += mesh.notes
     mesh, contacts = adjusted(mesh, deck, groups, contacts, notes)
     check_mesh(mesh)
+    mesh = replace(mesh, shells=tuple(name for name, piece in parts.items() if set(piece.codes) <= SHELLS))
     for contact, pair in zip(contacts, deck.pairs):
         with reasons.gathered():
             _check_sides(mesh, contact, pair)

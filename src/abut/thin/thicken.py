@@ -4,6 +4,7 @@ both mean the same."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -111,7 +112,8 @@ def made_solid(
     solid = groups.raw()
     mesh = build(Mesh, RawMesh(solid.points, {**parts.others, **solid.groups}, raw.notes), where)
     check_mesh(mesh)
-    return Thick(mesh, holding, bonded, given, tuple(joined))
+    shells = tuple(name for name, section in sections.items() if isinstance(section, Shell))
+    return Thick(replace(mesh, shells=shells), holding, bonded, given, tuple(joined))
 
 
 def _groups(deck: Deck, parts: Sorted, sections: Mapping[str, Thin]) -> Groups:
