@@ -32,7 +32,7 @@ ALONG = np.cos(np.radians(0.1))  # of the global x and the normal, from which on
 class MidSurface:
     """Results of a shell on its mid-surface, in the order of its points.
 
-    Attributes
+    Parameters
     ----------
     points : (n, 3) array
         Where they lie before they move [length].

@@ -174,7 +174,7 @@ class MidForce:
 class Thick:
     """Shells and beams made solid, for ``Model``.
 
-    Attributes
+    Parameters
     ----------
     mesh : Mesh
         With a body for each shell and beam, quadratic cells. Surfaces ``NAME.spos`` and ``NAME.sneg`` of a shell or of a
