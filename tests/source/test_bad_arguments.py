@@ -17,7 +17,7 @@ from abut.mesh import make
 BARE = (AttributeError, KeyError, IndexError, TypeError, ValueError)
 NOTHING = (None, 3, "", 3.5, [], {})  # what a user may have in a variable that should hold something else
 ERRORS = {name for name in abut.__all__ if isinstance(getattr(abut, name), type) and "Error" in name}
-RESULTS = {"FoundContact", "Solution"}  # abut makes these
+RESULTS = {"FoundContact", "MidSurface", "Solution", "Thick"}  # abut makes these
 LISTS = (
     "solids", "supports", "loads", "contacts", "equations", "rigid", "probes", "rotations", "couplings", "preloads",
     "springs", "holds", "penetrations",
@@ -49,6 +49,11 @@ VALID: dict[str, tuple[dict[str, Any], Callable[[Any], object]]] = {  # argument
     "Amplitude": ({"points": [(0, 0), (1, 1)]}, lambda a: within("loads")(abut.Pressure("b.right", 1.0, amplitude=a))),
     "Anisotropic": ({"constants": np.eye(6)[np.triu_indices(6)]}, kept),
     "ArrudaBoyce": ({"bulk": 100.0, "shear": 1.0, "locking": 3.0}, kept),
+    "Beam": ({"widths": (1.0, 2.0)}, kept),
+    "MidForce": ({"on": "a"}, kept),
+    "MidSupport": ({"on": "a", "x": 0.0}, kept),
+    "Shell": ({"thickness": 1.0}, kept),
+    "thicken": ({"path": "none.msh", "sections": {"a": abut.Shell(1.0)}}, kept),
     "Axes": ({"kind": "cylindrical"}, lambda axes: within("supports")(abut.Support("a.left", x=0, axes=axes))),
     "BodyForce": ({"value": (1.0, 0.0)}, within("loads")),
     "Centrifugal": ({"speed": 1.0}, within("loads")),
@@ -93,7 +98,14 @@ VALID: dict[str, tuple[dict[str, Any], Callable[[Any], object]]] = {  # argument
     "check": ({"model": MODEL}, kept),
     "find_contacts": ({"mesh": MESH}, kept),
 }  # fmt: skip
-OF_SOLUTIONS = {"plot", "solve", "to_pyvista", "write", "write_report"}  # whose other arguments take a solution
+OF_SOLUTIONS = {
+    "mid_surface",
+    "plot",
+    "solve",
+    "to_pyvista",
+    "write",
+    "write_report",
+}  # whose other arguments take a solution
 
 
 def sound(call: Callable[[], object], what: str) -> None:

@@ -47,6 +47,17 @@ MEANINGS: dict[str, dict[str, str]] = {
     "MeshTable": {
         "file": "mesh file beside the job file (.msh, .vtu, or .inp, of which the mesh alone is read)",
         "bodies": "bodies meshed by abut, by name",
+        "shells": "groups of surface cells in the file that are shells, by name",
+        "beams": "groups of lines in the file that are beams, by name",
+    },
+    "ShellTable": {
+        "thickness": "of the shell, > 0 [length]",
+        "offset": "of the mesh from the middle of the shell along the normal, over the thickness: 0.5 on the positive side",
+    },
+    "BeamTable": {
+        "widths": "of the rectangular section along its first direction and along the second, tangent x first, > 0 [length]",
+        "direction": "near which the first direction lies",
+        "offsets": "of the mesh from the middle of the section along both, over the widths",
     },
     "BodyTable": {"kind": "the generator; the further keys are its arguments"},
     "ModelTable": {
@@ -176,6 +187,9 @@ MEANINGS: dict[str, dict[str, str]] = {
         "x": "displacement along x, a number or an expression; left out: free [length]",
         "y": "displacement along y, a number or an expression; left out: free [length]",
         "z": "displacement along z (3D only), a number or an expression; left out: free [length]",
+        "rx": "turn about x of nodes of shells and beams, a number or an expression; left out: free [radian]",
+        "ry": "turn about y of nodes of shells and beams, a number or an expression; left out: free [radian]",
+        "rz": "turn about z of nodes of shells and beams, a number or an expression; left out: free [radian]",
         "normal": "displacement along the surface's own outward normal, instead of x, y, z [length]",
         "axes": "local axes, along whose first, second and third direction x, y and z then are, at each undeformed node",
     },
@@ -226,6 +240,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "kind": "the same force at each node of a set",
         "on": "name of the node set or surface",
         "value": "vector at each node; plane models: per unit thickness, axisymmetric: of the full circumference [force]",
+        "moment": "vector at each node of shells and beams [force length]",
     },
     "TemperatureTable": {
         "kind": "change of temperature, which strains bodies by their expansion",

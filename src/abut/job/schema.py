@@ -21,6 +21,7 @@ from abut.model.hold import STAY
 from abut.model.kinematics import KINEMATICS
 from abut.model.probe import QUANTITIES
 from abut.model.step_choice import WORDS as STEPS
+from abut.thin.records import Beam, Shell
 from abut.types import Json
 
 # Checked by the model's own record, which says once what is wrong where a choice of types would say it for each.
@@ -49,9 +50,26 @@ class BodyTable(BaseModel):
     kind: str
 
 
+class ShellTable(Table):
+    """a group of surface cells that its thickness makes solid"""
+
+    thickness: Number
+    offset: Number = Shell.offset
+
+
+class BeamTable(Table):
+    """a group of lines that a rectangular section makes solid"""
+
+    widths: list[Number]
+    direction: list[Number] = list(Beam.direction)
+    offsets: list[Number] = list(Beam.offsets)
+
+
 class MeshTable(Table):
     file: str | None = None
     bodies: dict[str, BodyTable] = {}
+    shells: dict[str, ShellTable] = {}
+    beams: dict[str, BeamTable] = {}
 
 
 class ModelTable(Table):
@@ -71,6 +89,9 @@ class SupportTable(Table):
     x: Varying = None
     y: Varying = None
     z: Varying = None
+    rx: Varying = None
+    ry: Varying = None
+    rz: Varying = None
     normal: Number | None = None
     amplitude: Points | None = None
     axes: AxesTable | None = None
