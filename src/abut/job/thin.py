@@ -53,7 +53,9 @@ def parts(file: JobFile, folder: Path, mesh: Mesh | None) -> Parts:
     raw, sections = read_raw(path), thin_of(file.mesh)
     on = _named(raw, sections, str(path))
     held = [i for i, table in enumerate(file.supports) if table.on in on]
-    pushed = [i for i, table in enumerate(file.loads) if isinstance(table, NODAL_FORCE) and table.on in on]
+    pushed = [
+        i for i, table in enumerate(file.loads) if isinstance(table, NODAL_FORCE) and values(table, "")["on"] in on
+    ]
     _check_solids(file, held, pushed)
     thick = made_solid(
         raw,
@@ -116,7 +118,8 @@ def _check_solids(file: JobFile, held: Sequence[int] = (), pushed: Sequence[int]
     for i, load in enumerate(file.loads):
         if i in pushed or not isinstance(load, NODAL_FORCE):
             continue
-        if load.moment is not None:
-            raise InputError(f"loads[{i}].moment: '{load.on}' carries none: {words}")
-        if load.value is None:
-            raise InputError(f"loads[{i}].value: missing; give the force at each node of '{load.on}'")
+        given = values(load, f"loads[{i}]")
+        if given["moment"] is not None:
+            raise InputError(f"loads[{i}].moment: '{given['on']}' carries none: {words}")
+        if given["value"] is None:
+            raise InputError(f"loads[{i}].value: missing; give the force at each node of '{given['on']}'")
