@@ -97,7 +97,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     if not deck.steps:
         raise InputError("no *STEP with *STATIC in the deck, or none left; abut solves these")
     if not deck.blocks:
-        raise InputError("the deck has no *ELEMENT cards")
+        raise InputError("the deck has no *ELEMENT cards of solids, shells or beams; add a body, even for springs")
     reasons = Reasons()
     for error in unsupported(deck):
         reasons.add(error)

@@ -191,10 +191,14 @@ def _boundary(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed]:
     name = line.text(1).upper()
     if name in NAMED_SUPPORTS:
         return [Prescribed("boundary", nodes, NAMED_SUPPORTS[name], 0.0, amplitude, line.place)]
+    thermal = {line.text(1), line.text(2)} & {"0", "11"}
+    if thermal:
+        raise line.error(
+            f"direction {min(thermal)} (temperature) belongs to heat transfer, which abut does not solve; give "
+            "temperatures by *TEMPERATURE"
+        )
     first = line.integer(1, "first direction")
     last = line.integer(2, "last direction", first)
-    if last == 11 or first == 11:
-        raise line.error("direction 11 (temperature) belongs to heat transfer, which abut does not solve")
     if not first <= last <= 6:
         raise line.error(f"directions {first} to {last}: expected numbers from 1 to 6, in order")
     value = line.number(3, "displacement", 0.0)
@@ -215,6 +219,11 @@ def _distributed(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed
     for number in elements.tolist():
         if number not in mesh.kinds:
             raise line.unknown(f"element {number} does not exist")
+    if label.endswith("NP"):
+        raise line.error(
+            f"{label} takes the pressure from a node of a network, which abut does not solve; give it as a number, with "
+            f"{label[:-2]}"
+        )
     if label == "GRAV":
         x, y, z = (line.number(i, "direction", 0.0) for i in (3, 4, 5))
         size = float(np.sqrt(x * x + y * y + z * z))
