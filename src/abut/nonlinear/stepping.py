@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
 
 from abut.linear.solver import LinearSolver, Prepared
 from abut.nonlinear.iteration import Increment
@@ -12,6 +15,8 @@ from abut.nonlinear.newton import Task
 from abut.nonlinear.pace import Pace
 from abut.problem.problem import ContactProblem, Problem
 from abut.solution.state import State
+
+ABSURD = 1e6  # displacement over model size that no units explain
 
 
 class SmallSteps:
@@ -37,7 +42,17 @@ class SmallSteps:
         condensed, prepared = self._ready
         increment = Increment(begin.number, begin.before.largest, self._control.settings)
         task = Task(condensed, begin.before, self._solver, increment, self._control.limit, self._control.observe)
-        return [load_step(task, pace.end, prepared)]
+        return [self._sound(load_step(task, pace.end, prepared))]
+
+    def _sound(self, attempt: Attempt) -> Attempt:
+        """An attempt, or one that has not converged: iterations of metal that flows may leave the solution so far behind
+        that what is out of balance is small beside the forces that they have come to."""
+        extent = float(np.ptp(self._problem.model.mesh.points, axis=0).max())
+        largest = float(np.abs(self._problem.displacement(attempt.state)).max(initial=0.0))
+        if self._problem.constant or not attempt.converged or largest < ABSURD * extent:
+            return attempt
+        reason = f"displacements of {largest:.2g} exceed {ABSURD:g} times the model size {extent:.2g}"
+        return replace(attempt, converged=False, reason=reason, balance=None)
 
     def replace(self, solver: LinearSolver) -> None:
         """As in ``Stepper``: for all steps to come."""
