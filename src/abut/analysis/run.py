@@ -28,7 +28,7 @@ from abut.nonlinear.march import Control, Stepper, march
 from abut.nonlinear.pace import Pace, Slips, given_pace, pace_of
 from abut.nonlinear.settings import DEFAULT, Settings
 from abut.nonlinear.stabilised import strides
-from abut.nonlinear.stepping import SmallSteps
+from abut.nonlinear.stepping import ABSURD, SmallSteps
 from abut.probing import Place, find_places, read
 from abut.problem.assembly import Assembled, assemble, prescribed
 from abut.problem.clock import Clock
@@ -42,8 +42,6 @@ from abut.solution.state import State
 
 if TYPE_CHECKING:
     from abut.parallel.team import Team
-
-ABSURD = 1e6  # displacement over model size that no units explain
 
 
 @dataclass

@@ -57,30 +57,23 @@ def newton(
     prepared = solver.prepare(system, previous)
     found = solve_step(prepared, guess, task.increment, task.limit, task.observe, earlier, aim, settle)
     error, near = np.inf, problem.constant
-    most = 0.0 if problem.constant else max(_left(system, guess, task.increment, settings.balanced))
     while found.converged and not problem.constant:
         system = problem.linearise(task.before, task.frame, found.state)
-        left, largest = _left(system, found.state, task.increment)
-        before, error = error, left / largest
-        if left <= most and (error <= settings.balanced or (error <= settings.stalled and error > 0.5 * before)):
+        before, error = error, _unbalanced(system, found.state, task.increment)
+        if error <= settings.balanced or (error <= settings.stalled and error > 0.5 * before):
             near = True
             break
-        more = task.limit - len(found.iterations) + len(earlier)
-        if more <= 0 or not np.isfinite(error):
+        left = task.limit - len(found.iterations) + len(earlier)
+        if left <= 0 or not np.isfinite(error):
             return replace(found, converged=False), prepared
         prepared = solver.prepare(system, prepared)
         found = solve_step(
-            prepared, found.state, task.increment, more, task.observe, found.iterations, aim, settle=True
+            prepared, found.state, task.increment, left, task.observe, found.iterations, aim, settle=True
         )
     return replace(found, system=system if near else None), prepared
 
 
-def _left(system: Linearised, state: State, increment: Increment, share: float = 1.0) -> tuple[float, float]:
-    """What is out of balance, and a share of the largest force.
-
-    No solution leaves more than the step began with, though it seem small beside the forces of metal that has flowed
-    without end."""
+def _unbalanced(system: Linearised, state: State, increment: Increment) -> float:
     internal = system.internal(state)
     largest = largest_force(system, state, internal, increment)
-    left = float(np.abs(system.relative(system.unbalanced(state, internal), largest)).max(initial=0.0))
-    return left * largest, share * largest
+    return float(np.abs(system.relative(system.unbalanced(state, internal), largest)).max(initial=0.0))
