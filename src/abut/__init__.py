@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from abut.materials.plastic import Plastic
     from abut.materials.rubber import ArrudaBoyce, MooneyRivlin, Ogden, Yeoh
     from abut.materials.temperature import OverTemperature
+    from abut.mesh.from_meshio import from_meshio
     from abut.mesh.mesh import Mesh
     from abut.model import (
         Amplitude,
@@ -68,7 +69,7 @@ _HOME = {  # of public names that do not come from abut.model
     **dict.fromkeys(("Anisotropic", "Orthotropic"), "abut.materials.anisotropic"),
     **dict.fromkeys(("ArrudaBoyce", "MooneyRivlin", "Ogden", "Yeoh"), "abut.materials.rubber"),
     "OverTemperature": "abut.materials.temperature",
-    "PressureOverclosure": "abut.contact.overclosure", "check": "abut.diagnosis",
+    "from_meshio": "abut.mesh.from_meshio", "PressureOverclosure": "abut.contact.overclosure", "check": "abut.diagnosis",
 }  # fmt: skip
 
 __all__ = [
@@ -77,8 +78,8 @@ __all__ = [
     "InputError", "Integration", "LinearElastic", "Mesh", "Model", "Moment", "MooneyRivlin", "NeoHooke", "NodalForce",
     "Ogden", "Orthotropic", "Output", "OverTemperature", "Penetration", "Plastic", "Preload", "Pressure",
     "PressureOverclosure", "Probe", "Rigid", "Rotation", "SingularModelError", "Solid", "Solution", "SolveOptions",
-    "Spring", "Support", "Temperature", "Term", "Traction", "Yeoh", "add_surfaces", "check", "find_contacts", "plot",
-    "solve", "to_pyvista", "write", "write_report",
+    "Spring", "Support", "Temperature", "Term", "Traction", "Yeoh", "add_surfaces", "check", "find_contacts",
+    "from_meshio", "plot", "solve", "to_pyvista", "write", "write_report",
 ]  # fmt: skip
 
 
