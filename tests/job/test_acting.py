@@ -87,7 +87,8 @@ def test_in_results_and_report(tmp_path: Path, capsys: pytest.CaptureFixture[str
     path = tmp_path / "job.toml"
     path.write_text(short)
     assert main(["run", str(path)]) == 0
-    wanted = "step 'rest' (time 3 to 4): supports 'low.bottom', 'top.left' (1); loads pressure on 'top.top' (1); contacts 'joint'"
+    wanted = "step 'rest' (time 3 to 4): supports 'low.bottom', 'top.left' (1); loads pressure on 'top.top' (1); "
+    wanted += "contacts 'joint'"
     assert wanted in capsys.readouterr().out
     assert wanted in json.loads((tmp_path / "results" / "summary.json").read_text())["notes"]
     assert "step &#x27;rest&#x27; (time 3 to 4)" in (tmp_path / "results" / "report.html").read_text()
