@@ -1,4 +1,4 @@
-"""STEP files (AP214) as other CAD programs write them: an assembly of boxes, each a product of its own, placed, with colours."""
+"""STEP files (AP214) as other CAD programs write them: an assembly of boxes, each a product of its own, with colours."""
 
 from __future__ import annotations
 
