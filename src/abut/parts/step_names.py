@@ -30,8 +30,8 @@ class Entity:
 
 def solid_names(path: Path) -> list[tuple[str, int]]:
     """Of each solid in its order in the file its name, "" where it has none, and its number of faces: the name of the
-    product whose only shape it is, or else its own, which many programs write after the last feature ("Boss-Extrude1"). Files of
-    other formats have none."""
+    product whose only shape it is, or else its own, which many programs write after the last feature ("Boss-Extrude1").
+    Files of other formats have none."""
     if path.suffix.lower() not in (".step", ".stp"):
         return []
     try:
