@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from abut.materials.plastic import Plastic
     from abut.materials.rubber import ArrudaBoyce, MooneyRivlin, Ogden, Yeoh
     from abut.materials.temperature import OverTemperature
+    from abut.mesh.from_meshio import from_meshio
     from abut.mesh.mesh import Mesh
     from abut.model import (
         Amplitude,
@@ -71,7 +72,7 @@ _HOME = {  # of public names that do not come from abut.model
     **dict.fromkeys(("Anisotropic", "Orthotropic"), "abut.materials.anisotropic"),
     **dict.fromkeys(("ArrudaBoyce", "MooneyRivlin", "Ogden", "Yeoh"), "abut.materials.rubber"),
     "OverTemperature": "abut.materials.temperature",
-    "PressureOverclosure": "abut.contact.overclosure", "check": "abut.diagnosis",
+    "from_meshio": "abut.mesh.from_meshio", "PressureOverclosure": "abut.contact.overclosure", "check": "abut.diagnosis",
     **dict.fromkeys(("Beam", "MidForce", "MidSupport", "Shell", "Thick"), "abut.thin.records"),
     "thicken": "abut.thin.thicken",
     **dict.fromkeys(("MidSurface", "mid_surface"), "abut.solution.mid_surface"),
@@ -84,8 +85,8 @@ __all__ = [
     "Moment", "MooneyRivlin", "NeoHooke", "NodalForce", "Ogden", "Orthotropic", "Output", "OverTemperature",
     "Penetration", "Plastic", "Preload", "Pressure", "PressureOverclosure", "Probe", "Rigid", "Rotation", "Shell",
     "SingularModelError", "Solid", "Solution", "SolveOptions", "Spring", "Support", "Temperature", "Term", "Thick",
-    "Traction", "Yeoh", "add_surfaces", "check", "find_contacts", "mid_surface", "plot", "solve", "thicken",
-    "to_pyvista", "write", "write_report",
+    "Traction", "Yeoh", "add_surfaces", "check", "find_contacts", "from_meshio", "mid_surface", "plot", "solve",
+    "thicken", "to_pyvista", "write", "write_report",
 ]  # fmt: skip
 
 

@@ -6,6 +6,7 @@ import inspect
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -97,6 +98,7 @@ VALID: dict[str, tuple[dict[str, Any], Callable[[Any], object]]] = {  # argument
     "add_surfaces": ({"mesh": MESH, "found": ()}, kept),
     "check": ({"model": MODEL}, kept),
     "find_contacts": ({"mesh": MESH}, kept),
+    "from_meshio": ({"mesh": SimpleNamespace(points=MESH.points, cells=[("quad", b.nodes) for b in MESH.blocks])}, kept),
 }  # fmt: skip
 OF_SOLUTIONS = {
     "mid_surface",

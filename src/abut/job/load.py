@@ -13,6 +13,7 @@ from pydantic import BaseModel, ValidationError
 from abut.contact.overclosure import PressureOverclosure
 from abut.errors import InputError, nearest
 from abut.io.toml import read_toml
+from abut.job.acting import acting, parts
 from abut.job.contacts import Resolved, resolve_contacts
 from abut.job.load_tables import LOADS
 from abut.job.material_tables import MATERIALS
@@ -115,7 +116,8 @@ def load_job(
     said = [
         f"parameter {name} = {value:g}{' (set)' if name in (settings or {}) else ''}" for name, value in names.items()
     ]
-    notes = (*said, *model.mesh.notes, *resolved.notes)
+    steps = acting(model, parts(file.steps, model.solve.end)) if file.steps else ()
+    notes = (*said, *model.mesh.notes, *resolved.notes, *steps)
     return Job(
         model, path.parent / file.output.directory, path, text, notes, resolved.entries, output=output, parameters=names
     )
