@@ -122,7 +122,7 @@ def test_cantilever_of_lines(force: tuple[float, ...], axis: int, inertia: float
 
 def test_twisted_line(tmp_path: Path) -> None:
     """A moment about the line turns its end about it alone; one across bends it: M L^2 / 2 E I."""
-    held, load = [abut.MidSupport("root", **CLAMPED)], [abut.MidForce("tip", moment=(0.0, -100.0, 0.0))]
+    held, load = [abut.MidSupport("root", **CLAMPED)], [abut.MidForce("tip", (0.0, 0.0, 0.0), (0.0, -100.0, 0.0))]
     thick = abut.thicken(line(tmp_path / "a.msh"), {"rib": abut.Beam((2.0, 5.0), (0.0, 1.0, 0.0))}, held, load)
     assert mid(solved(thick, "rib", "full"), LENGTH) == pytest.approx(
         100.0 * LENGTH**2 / (2 * E * 2 * 5**3 / 12), rel=0.005
@@ -171,7 +171,7 @@ def test_job(tmp_path: Path) -> None:
             r"supports\[1\].ry: turns other than",
         ),
         (
-            {"load": '{ kind = "nodal-force", on = "right", moment = [0, 0, 1] }'},
+            {"load": '{ kind = "nodal-force", on = "right", value = [0, 0, 0], moment = [0, 0, 1] }'},
             "has a moment about the normal of its shell",
         ),
         (

@@ -10,7 +10,7 @@ from pydantic import BaseModel
 
 from abut.errors import InputError
 from abut.io.raw import RawMesh
-from abut.job.schema import JobFile, MeshTable, NodalForceTable, SupportTable
+from abut.job.schema import JobFile, MeshTable, SupportTable
 from abut.job.values import values
 from abut.mesh.mesh import Mesh
 from abut.mesh.read import read_raw
@@ -19,6 +19,7 @@ from abut.thin.quadratic import sort
 from abut.thin.records import Beam, MidForce, MidSupport, Shell, Thick, Thin
 
 AUTO = "auto"
+FORCE = "nodal-force"
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,8 @@ def parts(file: JobFile, folder: Path, mesh: Mesh | None) -> Parts:
     raw, sections = read_raw(path), thin_of(file.mesh)
     on = _named(raw, sections, str(path))
     held = [i for i, table in enumerate(file.supports) if table.on in on]
-    pushed = [i for i, table in enumerate(file.loads) if isinstance(table, NodalForceTable) and table.on in on]
+    loads = [table.model_dump() for table in file.loads]
+    pushed = [i for i, load in enumerate(loads) if load["kind"] == FORCE and load["on"] in on]
     _check_solids(file, held, pushed)
     thick = made_solid(
         raw,
@@ -97,7 +99,6 @@ def _support(table: SupportTable, where: str) -> MidSupport:
 def _force(table: BaseModel, where: str) -> MidForce:
     given = values(table, where)
     given.pop("kind")
-    given["moment"] = given["moment"] or (0.0, 0.0, 0.0)
     return MidForce(**given)
 
 
@@ -110,6 +111,6 @@ def _check_solids(file: JobFile, held: Sequence[int] = (), pushed: Sequence[int]
         for name in TURNS if i not in held else ():
             if getattr(support, name) is not None:
                 raise InputError(f"supports[{i}].{name}: '{support.on}' has none: {words}")
-    for i, load in enumerate(file.loads):
-        if i not in pushed and isinstance(load, NodalForceTable) and load.moment is not None:
-            raise InputError(f"loads[{i}].moment: '{load.on}' carries none: {words}")
+    for i, load in enumerate(table.model_dump() for table in file.loads):
+        if i not in pushed and load["kind"] == FORCE and any(load["moment"]):
+            raise InputError(f"loads[{i}].moment: '{load['on']}' carries none: {words}")
