@@ -120,6 +120,8 @@ _MATERIAL = "; abut's solids are linear elastic, plastic or, with NLGEOM, neo-Ho
 _RUBBER = "this kind of rubber elasticity is not supported; fit MOONEY-RIVLIN, YEOH, OGDEN or ARRUDA-BOYCE"
 _WRITE = "; have the preprocessor write out every node and element"
 REFUSED: dict[str, str] = {
+    "BEAM GENERAL SECTION": "pipes, boxes and sections by their moments are not supported; give *BEAM SECTION with a "
+    "rectangle (SECTION=RECT), or model the part with shells or solids",
     "CFLUX": "heat flux belongs to heat transfer, which abut does not solve",
     "CHANGE CONTACT TYPE": "contact that changes between steps is not supported; make a deck for each state",
     "CHANGE MATERIAL": "materials that change between steps are not supported; make a deck for each state",
@@ -177,6 +179,7 @@ GENERATED = {  # nodes and elements that do not stand in the deck, or under numb
 }
 NEEDED = {  # leaving these out would leave no deck
     *GENERATED,
+    key("BEAM GENERAL SECTION"),
     key("MEMBRANE SECTION"),
 }
 
