@@ -51,7 +51,7 @@ VALID: dict[str, tuple[dict[str, Any], Callable[[Any], object]]] = {  # argument
     "Anisotropic": ({"constants": np.eye(6)[np.triu_indices(6)]}, kept),
     "ArrudaBoyce": ({"bulk": 100.0, "shear": 1.0, "locking": 3.0}, kept),
     "Beam": ({"widths": (1.0, 2.0)}, kept),
-    "MidForce": ({"on": "a"}, kept),
+    "MidForce": ({"on": "a", "value": (1.0, 0.0, 0.0)}, kept),
     "MidSupport": ({"on": "a", "x": 0.0}, kept),
     "Shell": ({"thickness": 1.0}, kept),
     "thicken": ({"path": "none.msh", "sections": {"a": abut.Shell(1.0)}}, kept),

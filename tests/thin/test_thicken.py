@@ -122,7 +122,7 @@ def test_cantilever_of_lines(force: tuple[float, ...], axis: int, inertia: float
 
 def test_twisted_line(tmp_path: Path) -> None:
     """A moment about the line turns its end about it alone; one across bends it: M L^2 / 2 E I."""
-    held, load = [abut.MidSupport("root", **CLAMPED)], [abut.MidForce("tip", moment=(0.0, -100.0, 0.0))]
+    held, load = [abut.MidSupport("root", **CLAMPED)], [abut.MidForce("tip", (0.0, 0.0, 0.0), (0.0, -100.0, 0.0))]
     thick = abut.thicken(line(tmp_path / "a.msh"), {"rib": abut.Beam((2.0, 5.0), (0.0, 1.0, 0.0))}, held, load)
     assert mid(solved(thick, "rib", "full"), LENGTH) == pytest.approx(
         100.0 * LENGTH**2 / (2 * E * 2 * 5**3 / 12), rel=0.005
@@ -171,7 +171,7 @@ def test_job(tmp_path: Path) -> None:
             r"supports\[1\].ry: turns other than",
         ),
         (
-            {"load": '{ kind = "nodal-force", on = "right", moment = [0, 0, 1] }'},
+            {"load": '{ kind = "nodal-force", on = "right", value = [0, 0, 0], moment = [0, 0, 1] }'},
             "has a moment about the normal of its shell",
         ),
         (
@@ -198,17 +198,22 @@ def test_sections_refused(sections: dict[str, abut.Shell | abut.Beam], words: st
         abut.thicken(strip(tmp_path / "a.msh"), sections)
 
 
-def on_a_block(path: Path, above: float, shared: bool = False) -> Path:
-    """A unit cube of groups "block" and "base"; over it a sheet of one cell, whose mesh is ``above`` it; shared: that
-    stands upright on an edge of the cube instead, by its nodes there ("crest" is its free edge)."""
+def on_a_block(path: Path, above: float, upright: str = "") -> Path:
+    """A unit cube of groups "block" and "base"; over it a sheet of one cell, whose mesh is ``above`` it; upright: that
+    stands on an edge of the cube instead, by its nodes there ("shared") or in its middle by nodes of its own ("apart");
+    "foot" and "crest" are its edges there and above."""
     cube = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]
-    sheet = [[0, 0, 2], [0, 1, 2]] if shared else [[x, y, 1 + above] for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+    flat = [[x, y, 1 + above] for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+    apart = [[0.5, y, z] for y, z in ((0.1, 1), (0.9, 1), (0.9, 2), (0.1, 2))]
+    sheet = {"": flat, "shared": [[0, 1, 2], [0, 0, 2]], "apart": apart}[upright]
+    cell = [4, 7, 8, 9] if upright == "shared" else [8, 9, 10, 11]
     groups = {
         "block": {"hex8": [list(range(8))]},
         "base": {"quad4": [[0, 3, 2, 1]]},
         "top": {"quad4": [[4, 5, 6, 7]]},
-        "sheet": {"quad4": [[4, 7, 9, 8] if shared else [8, 9, 10, 11]]},
-        "crest": {"line2": [[8, 9]]},
+        "sheet": {"quad4": [cell]},
+        "foot": {"line2": [cell[:2]]},
+        "crest": {"line2": [cell[2:]]},
         "all": {"point": [[n] for n in range(8)]},
     }
     return write_msh(path, np.array([*cube, *sheet], dtype=float), groups)
@@ -243,10 +248,27 @@ def test_contact_on_a_side(auto: bool, tmp_path: Path) -> None:
 def test_sheet_on_shared_nodes(tmp_path: Path) -> None:
     """A sheet that shares nodes with the edge of a block and is pulled along itself pulls the block: with Poisson's ratio 0
     the sheet lengthens by p L / E."""
-    on_a_block(tmp_path / "a.msh", 0.0, shared=True)
+    on_a_block(tmp_path / "a.msh", 0.0, "shared")
     text = SHEET + 'supports = [{ on = "all", x = 0, y = 0, z = 0 }, { on = "sheet", x = 0, y = 0 }]\n'
     text += 'loads = [{ kind = "traction", on = "crest.edge", value = [0, 0, 10.0] }]\n'
     (tmp_path / "job.toml").write_text(text)
     solution = abut.solve(load_job(tmp_path / "job.toml").model)
     points = solution.model.mesh.points
     assert solution.displacement[points[:, 2] > 1.9][:, 2] == pytest.approx(10.0 / 1000.0, rel=1e-4)
+
+
+def test_tied_by_its_edge(tmp_path: Path) -> None:
+    """A sheet tied to the top of a block by the face of its edge: pulled, both carry the force, the sheet lengthens by
+    p L / E and what the block gives way by."""
+    on_a_block(tmp_path / "a.msh", 0.0, "apart")
+    text = SHEET.replace(
+        '"sheet", material', '"sheet", integration = "full", material'
+    )  # one cell alone would be loose
+    text += 'supports = [{ on = "all", x = 0, y = 0, z = 0 }, { on = "sheet", x = 0, y = 0 }]\n'
+    text += 'loads = [{ kind = "traction", on = "crest.edge", value = [0, 0, 10.0] }]\n'
+    text += 'contacts = [{ contactor = "foot.edge", target = "top", kind = "tied" }]\n'
+    (tmp_path / "job.toml").write_text(text)
+    solution = abut.solve(load_job(tmp_path / "job.toml").model)
+    points = solution.model.mesh.points
+    assert solution.displacement[points[:, 2] > 1.9][:, 2] == pytest.approx(10.0 / 1000.0, rel=1e-3)
+    assert abs(solution.contacts[0].force[2]) == pytest.approx(10.0 * 0.8 * 0.2, rel=1e-6)

@@ -45,19 +45,17 @@ def table_of(
     others: Mapping[str, Any] | None = None,
     meaning: str | None = None,
     kind: str = "",
-    more: Mapping[str, Any] | None = None,
 ) -> type[Table]:
     """The table of a record (a dataclass): a key for each of its fields, those that must be given first.
 
     others: types of keys that say more than the fields'; meaning: of the table; kind: what its key ``kind`` says, if it has
-    one; more: types of keys that may be left out (None then), of no field or in place of one's."""
+    one."""
     hints, known = get_type_hints(record), others or {}
     keys: dict[str, Any] = {"kind": (Literal[kind], ...)} if kind else {}
     for each in sorted(fields(record), key=lambda own: own.default is not MISSING):
         default = list(each.default) if isinstance(each.default, tuple) else each.default
         as_key = known[each.name] if each.name in known else TYPES[hints[each.name]]
         keys[each.name] = as_key, ... if each.default is MISSING else default
-    keys.update({name: (type_, None) for name, type_ in (more or {}).items()})
     made: type[Table] = create_model(f"{record.__name__}Table", __base__=Table, __doc__=meaning, **keys)
     return made
 

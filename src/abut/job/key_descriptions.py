@@ -236,7 +236,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "on": "name of the body; left out: all bodies",
         "amplitude": "of the force: the square of that of the speed",
     },
-    "NodalForceTable": {
+    "MidForceTable": {
         "kind": "the same force at each node of a set",
         "on": "name of the node set or surface",
         "value": "vector at each node; plane models: per unit thickness, axisymmetric: of the full circumference [force]",

@@ -50,26 +50,15 @@ class BodyTable(BaseModel):
     kind: str
 
 
-class ShellTable(Table):
-    """a group of surface cells that its thickness makes solid"""
-
-    thickness: Number
-    offset: Number = Shell.offset
-
-
-class BeamTable(Table):
-    """a group of lines that a rectangular section makes solid"""
-
-    widths: list[Number]
-    direction: list[Number] = list(Beam.direction)
-    offsets: list[Number] = list(Beam.offsets)
+SHELL = table_of(Shell, meaning="a group of surface cells that its thickness makes solid")
+BEAM = table_of(Beam, meaning="a group of lines that a rectangular section makes solid")
 
 
 class MeshTable(Table):
     file: str | None = None
     bodies: dict[str, BodyTable] = {}
-    shells: dict[str, ShellTable] = {}
-    beams: dict[str, BeamTable] = {}
+    shells: Annotated[dict[str, Any], Of(dict[str, SHELL])] = {}
+    beams: Annotated[dict[str, Any], Of(dict[str, BEAM])] = {}
 
 
 class ModelTable(Table):

@@ -10,7 +10,6 @@ from pydantic import BaseModel
 
 from abut.errors import InputError
 from abut.io.raw import RawMesh
-from abut.job.load_tables import TABLES
 from abut.job.schema import JobFile, MeshTable, SupportTable
 from abut.job.values import values
 from abut.mesh.mesh import Mesh
@@ -20,7 +19,7 @@ from abut.thin.quadratic import sort
 from abut.thin.records import Beam, MidForce, MidSupport, Shell, Thick, Thin
 
 AUTO = "auto"
-NODAL_FORCE = TABLES["nodal-force"]
+FORCE = "nodal-force"
 
 
 @dataclass(frozen=True)
@@ -53,9 +52,8 @@ def parts(file: JobFile, folder: Path, mesh: Mesh | None) -> Parts:
     raw, sections = read_raw(path), thin_of(file.mesh)
     on = _named(raw, sections, str(path))
     held = [i for i, table in enumerate(file.supports) if table.on in on]
-    pushed = [
-        i for i, table in enumerate(file.loads) if isinstance(table, NODAL_FORCE) and values(table, "")["on"] in on
-    ]
+    loads = [table.model_dump() for table in file.loads]
+    pushed = [i for i, load in enumerate(loads) if load["kind"] == FORCE and load["on"] in on]
     _check_solids(file, held, pushed)
     thick = made_solid(
         raw,
@@ -101,8 +99,6 @@ def _support(table: SupportTable, where: str) -> MidSupport:
 def _force(table: BaseModel, where: str) -> MidForce:
     given = values(table, where)
     given.pop("kind")
-    for name in ("value", "moment"):
-        given[name] = given[name] or (0.0, 0.0, 0.0)
     return MidForce(**given)
 
 
@@ -115,11 +111,6 @@ def _check_solids(file: JobFile, held: Sequence[int] = (), pushed: Sequence[int]
         for name in TURNS if i not in held else ():
             if getattr(support, name) is not None:
                 raise InputError(f"supports[{i}].{name}: '{support.on}' has none: {words}")
-    for i, load in enumerate(file.loads):
-        if i in pushed or not isinstance(load, NODAL_FORCE):
-            continue
-        given = values(load, f"loads[{i}]")
-        if given["moment"] is not None:
-            raise InputError(f"loads[{i}].moment: '{given['on']}' carries none: {words}")
-        if given["value"] is None:
-            raise InputError(f"loads[{i}].value: missing; give the force at each node of '{given['on']}'")
+    for i, load in enumerate(table.model_dump() for table in file.loads):
+        if i not in pushed and load["kind"] == FORCE and any(load["moment"]):
+            raise InputError(f"loads[{i}].moment: '{load['on']}' carries none: {words}")

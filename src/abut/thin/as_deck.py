@@ -62,9 +62,8 @@ def as_deck(parts: Sorted, sections: Mapping[str, Thin], where: str) -> Deck:
 def _section(name: str, section: Thin, ids: Numbers) -> Section:
     if isinstance(section, Shell):
         return Section(name, ids, NOTHING, section.thickness, PLACE, offset=section.offset)
-    return Section(
-        name, ids, NOTHING, 1.0, PLACE, widths=section.widths, axis=section.direction, offsets=section.offsets
-    )
+    (a, b), (x, y, z), (first, second) = section.widths, section.direction, section.offsets
+    return Section(name, ids, NOTHING, 1.0, PLACE, widths=(a, b), axis=(x, y, z), offsets=(first, second))
 
 
 def _solids(parts: Sorted) -> Iterator[tuple[str, Numbers]]:

@@ -69,9 +69,9 @@ class Beam:
     >>> rib = abut.Beam((2.0, 10.0), direction=(0.0, 1.0, 0.0))  # of a line along x: 2 along y, 10 along z
     """
 
-    widths: tuple[float, float]
-    direction: tuple[float, float, float] = (0.0, 0.0, -1.0)
-    offsets: tuple[float, float] = (0.0, 0.0)
+    widths: tuple[float, ...]
+    direction: tuple[float, ...] = (0.0, 0.0, -1.0)
+    offsets: tuple[float, ...] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
         for name, count in (("widths", 2), ("direction", 3), ("offsets", 2)):
@@ -155,7 +155,7 @@ class MidForce:
     """
 
     on: str
-    value: tuple[float, ...] = (0.0, 0.0, 0.0)
+    value: tuple[float, ...]
     moment: tuple[float, ...] = (0.0, 0.0, 0.0)
     amplitude: History = None
 

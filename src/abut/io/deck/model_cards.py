@@ -146,7 +146,7 @@ def _beam_section(
     """One *BEAM SECTION. Raises InputError for other sections than rectangles, and for widths that are none."""
     if not key(card.get("SECTION", "RECT") or "").startswith("RECT"):  # CalculiX reads four letters
         raise card.error(
-            f"SECTION={card.get('SECTION')}: only rectangles (RECT) are supported; model the part with solids"
+            f"SECTION={card.get('SECTION')}: only rectangles (RECT) are supported; model the part with shells or solids"
         )
     line = card.first("widths")
     first = line.number(0, "width")

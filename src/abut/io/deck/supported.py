@@ -103,6 +103,7 @@ GENERATED = {  # nodes and elements that do not stand in the deck, or under numb
 }
 NEEDED = {  # leaving these out would leave no deck
     *GENERATED,
+    key("BEAM GENERAL SECTION"),
     key("MEMBRANE SECTION"),
 }
 
