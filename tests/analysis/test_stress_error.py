@@ -96,8 +96,8 @@ def test_without_an_earlier_run_nothing_is_said(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("cell", "around"), [("quad4", (8, 12)), ("quad4", (16, 24)), ("tri3", (16, 24))])
 def test_the_mean_pressure_of_a_fit(cell: str, around: tuple[int, int]) -> None:
     """The strain energy of bodies that are moved, not loaded, is the least of all that they can take, and of cells too high
-    by the square of the error in the energy norm (Galerkin); it is half of what the interference does on the pressure. Lame's
-    is that of the smooth rings, so that facets have a part in it."""
+    by the square of the error in the energy norm (Galerkin); it is half of what the interference does on the pressure. The
+    exact one is that of smooth rings, so that facets have a part in it."""
     solution = abut.solve(fit(around, cell))
     error = solution.steps[-1].stress_error
     assert error is not None
