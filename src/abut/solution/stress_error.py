@@ -8,7 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-MEANING = "estimated error of the elements' stresses in the energy norm, of the whole model or near contact; what nodes show is closer"
+MEANING = (
+    "estimated error of the elements' stresses in the energy norm, of the whole model or near contact; "
+    "what nodes show is closer"
+)
 AIM = 0.05  # relative error in the energy norm that engineers ask for (Zienkiewicz and Zhu 1987)
 
 
