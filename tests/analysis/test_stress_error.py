@@ -16,7 +16,7 @@ from abut.diagnosis.cures import cure
 from abut.diagnosis.earlier import sizes_wanted
 from abut.mesh.make import join, rectangle
 from abut.output.results import summary
-from models.certificate import fit, fit_pressure
+from models.certificate import fit, fit_pressure, plate
 from models.patch import model, two_blocks
 from models.stresses import hertz_line
 
@@ -105,9 +105,25 @@ def test_the_mean_pressure_of_a_fit(cell: str, around: tuple[int, int]) -> None:
     off = float(np.nanmean(pressure)) / fit_pressure() - 1.0
     assert off == pytest.approx(error.stiffer, rel=0.5)
     (line,) = (check for check in solution.certificate if check.name == "stress error")
-    assert f"about {error.stiffer:.1%} too much pressure in the mean" in line.meaning
+    assert f"up to about {error.stiffer:.1%} too much pressure in the mean" in line.meaning
 
 
 def test_a_load_sets_the_mean() -> None:
     (line,) = (check for check in abut.solve(hertz_line("quad4", 3)).certificate if check.name == "stress error")
     assert "in the mean" not in line.meaning
+
+
+@pytest.mark.parametrize(("cell", "n"), [("quad4", 4), ("quad4", 8), ("tri3", 4), ("tri3", 8)])
+def test_the_force_of_a_block_pressed_down(cell: str, n: int) -> None:
+    """The force does half of its way as strain energy: too high by the same share, of that on a mesh of second order eight or
+    four times as fine. At the block's corners stresses have no bound, which recovery does not follow: within a third."""
+    (fine, _), (coarse, said) = pressed_down("quad8", 32), pressed_down(cell, n)
+    assert coarse / fine - 1.0 == pytest.approx(said, rel=1.0 / 3.0)
+
+
+def pressed_down(cell: str, n: int) -> tuple[float, float]:
+    """Force, and what is said of its error."""
+    solution = abut.solve(plate(cell, n, n))
+    error = solution.steps[-1].stress_error
+    assert error is not None
+    return abs(float(solution.contacts[0].force[1])), error.stiffer
