@@ -116,7 +116,7 @@ def test_a_load_sets_the_mean() -> None:
 @pytest.mark.parametrize(("cell", "n"), [("quad4", 4), ("quad4", 8), ("tri3", 4), ("tri3", 8)])
 def test_the_force_of_a_block_pressed_down(cell: str, n: int) -> None:
     """The force does half of its way as strain energy: too high by the same share, of that on a mesh of second order that is
-    four or eight times as fine. At the block's corners stresses have no bound, which recovery does not follow: within a third."""
+    four or eight times as fine. At the block's corners stresses have no bound and are recovered worse: within a third."""
     (fine, _), (coarse, said) = pressed_down("quad8", 32), pressed_down(cell, n)
     assert coarse / fine - 1.0 == pytest.approx(said, rel=1.0 / 3.0)
 

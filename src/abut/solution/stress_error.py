@@ -49,7 +49,9 @@ class StressError:
 
     def meaning(self, loaded: bool) -> str:
         """What the certificate says of it; loaded: whether forces act, which contacts then carry whatever the mesh is."""
-        mean = f"; up to about {self.stiffer:.1%} too much pressure in the mean, as no loads set it" if not loaded else ""
+        mean = (
+            f"; up to about {self.stiffer:.1%} too much pressure in the mean, as no loads set it" if not loaded else ""
+        )
         return f"{MEANING}{mean}"
 
     @property
