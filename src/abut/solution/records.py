@@ -291,6 +291,7 @@ class Solution:
         lines: dict[tuple[str, str], list[Check]] = {}
         idle = _driven(self.model) and not any(step.strained for step in self.steps)
         response = Check("", "response", float(idle), RESPONSE, "1 where something is prescribed and nothing deforms")
+        loaded = _loaded(self.model)
         most = max((step.energy.size for step in self.steps if step.energy is not None), default=0.0)
         for step in self.steps:
             balance = Check(
@@ -316,8 +317,7 @@ class Solution:
                 model += step.flow.checks(self.model.finite, bool(self.model.loads))
             if step.stress_error is not None:
                 model.append(Check("", "stress error", step.stress_error.largest, STRESS_ERROR,
-                                   "estimated error of the elements' stresses in the energy norm, of the whole model "
-                                   "or near contact; what nodes show is closer",
+                                   step.stress_error.meaning(loaded),
                                    pressure=float(np.sqrt(step.stress_error.energy)), highest=True,
                                    notice=STRESS_NOTICED))  # fmt: skip
             model += preload_checks(step.preloads)
@@ -376,6 +376,11 @@ def _driven(model: Model) -> bool:
     given = (*model.supports, *model.loads, *model.equations, *model.rigid, *model.couplings)
     hot = any(solid.temperature for solid in model.solids)
     return hot or any(map(drives, given)) or any(smallest_offset(contact) < 0.0 for contact in model.contacts)
+
+
+def _loaded(model: Model) -> bool:
+    """Whether forces may act, so that what contacts carry is not due to motions, heat and interference alone."""
+    return not model.contacts or bool(model.loads or model.preloads or model.rigid or model.couplings or model.physics)
 
 
 OnStep = Callable[[Solution, Saved], None]  # gets the solution so far after each converged step, and what restarts it
