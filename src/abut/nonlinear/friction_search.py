@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from abut.errors import SingularModelError
-from abut.nonlinear.friction_newton import Course, newton, next_status
+from abut.nonlinear.friction_laws import next_status
+from abut.nonlinear.friction_newton import Course, newton
 from abut.nonlinear.interior_point import Manner, Programme, begin, iterate, near
 from abut.nonlinear.iteration import Found, largest_pressure, points
 from abut.nonlinear.settings import Settings
