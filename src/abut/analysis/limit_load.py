@@ -12,7 +12,7 @@ from abut.materials.material import history_fields
 from abut.materials.plastic import EQUIVALENT
 from abut.model import Model
 from abut.model.conditions import weights
-from abut.nonlinear.load_step import Attempt
+from abut.nonlinear.attempt import Attempt
 from abut.problem.assembly import Assembled
 from abut.solution import Step
 from abut.solution.flow import Flow, LimitLoad

@@ -31,7 +31,7 @@ from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.model.conditions import weights
 from abut.model.offset import offsets
-from abut.nonlinear.load_step import Attempt
+from abut.nonlinear.attempt import Attempt
 from abut.nonlinear.settings import DEFAULT
 from abut.problem.assembly import Assembled
 from abut.problem.balance import Balance

@@ -22,8 +22,8 @@ from abut.model import Model
 from abut.model.conditions import weights
 from abut.model.offset import offsets
 from abut.model.side_choice import choices
+from abut.nonlinear.attempt import Attempt
 from abut.nonlinear.large_steps import LargeSteps
-from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.march import Control, Stepper, march
 from abut.nonlinear.pace import Pace, Slips, given_pace, pace_of
 from abut.nonlinear.settings import DEFAULT, Settings

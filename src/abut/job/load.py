@@ -20,7 +20,7 @@ from abut.job.material_tables import MATERIALS
 from abut.job.other_names import key_called, kind_said
 from abut.job.parameters import parameters, worked_out
 from abut.job.schema import EquationTable, JobFile, MeshTable
-from abut.job.thin import parts
+from abut.job.thin import with_thin
 from abut.job.times import with_shares
 from abut.job.values import values
 from abut.materials.material import Material
@@ -143,7 +143,7 @@ def _deck(path: Path, refine: int, ignore: Collection[str], soft: bool) -> Job:
 
 def _model(file: JobFile, folder: Path, refine: int) -> tuple[Model, Resolved]:
     materials = _materials(file.materials)
-    thin = parts(file, folder, _mesh(file.mesh, folder, refine))
+    thin = with_thin(file, folder, _mesh(file.mesh, folder, refine))
     solids = []
     for i, s in enumerate(file.solids):
         if s.material not in materials:

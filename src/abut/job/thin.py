@@ -40,7 +40,7 @@ class Parts:
         return "reduced" if isinstance(section, Shell) else "full"
 
 
-def parts(file: JobFile, folder: Path, mesh: Mesh | None) -> Parts:
+def with_thin(file: JobFile, folder: Path, mesh: Mesh | None) -> Parts:
     """Of a job. mesh: the one of a job without shells and beams. Raises InputError for what does not go together."""
     if mesh is not None:
         _check_solids(file)

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from abut.linear.solver import LinearSolver
+from abut.nonlinear.attempt import Attempt
 from abut.nonlinear.hanging import hanging
 from abut.nonlinear.holding import lifted, overcome
-from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.march import Begin, Control
 from abut.nonlinear.one_step import Setting
 from abut.nonlinear.pace import Pace

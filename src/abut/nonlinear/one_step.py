@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from abut.linear.solver import LinearSolver
+from abut.nonlinear.attempt import Attempt
 from abut.nonlinear.drag import Drag
 from abut.nonlinear.iteration import Found, Increment
-from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.semismooth import Step, largest_of, solve_finite
 from abut.nonlinear.settings import DEFAULT, Settings
 from abut.problem.balance import Balance

@@ -8,8 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from abut.linear.solver import LinearSolver, Prepared
+from abut.nonlinear.active_set import solve_step
+from abut.nonlinear.attempt import Attempt
 from abut.nonlinear.iteration import Increment
-from abut.nonlinear.load_step import Attempt, load_step
+from abut.nonlinear.load_step import load_step
 from abut.nonlinear.march import Begin, Control
 from abut.nonlinear.newton import Task
 from abut.nonlinear.one_step import UNSTEADY
@@ -42,7 +44,9 @@ class SmallSteps:
         assert pace.end is not None
         condensed, prepared = self._ready
         increment = Increment(begin.number, begin.before.largest, self._control.settings)
-        task = Task(condensed, begin.before, self._solver, increment, self._control.limit, self._control.observe)
+        task = Task(
+            condensed, begin.before, self._solver, increment, self._control.limit, self._control.observe, solve_step
+        )
         return [self._sound(self._steady(task, pace.end, prepared))]
 
     def _steady(self, task: Task, end: float, prepared: Prepared) -> Attempt:
