@@ -93,21 +93,6 @@ def in_the_mean(points: PairPoints, law: Law, gap: Vector, multipliers: Vector) 
     )
 
 
-def softened(gap: Vector, shift: Vector, softness: Vector, closed: NDArray[np.bool_]) -> LawRows:
-    """Contact made soft: gap + d gap + softness d pressure = shift, theory (V18).
-
-    gap, shift: (n,) weighted gaps; softness: (n,) gap per pressure, positive, or zero where a gap is to close."""
-    n = len(gap)
-    return LawRows(
-        residual=shift - gap,
-        closed=closed,
-        by_gap=-sp.identity(n, format="csr"),
-        by_pressure=sp.diags(-softness, format="csr"),
-        at_points=False,
-        decoupled=np.zeros(n, dtype=bool),
-    )
-
-
 def giving(pair: Pair, law: LawRows) -> LawRows:
     """A law for one iteration, in which jumps that the target alone sees give way to a change of their tractions: what more
     functions hold than it has nodes is unique then, theory (R20). Residuals stay as they are, and with them the solution."""
