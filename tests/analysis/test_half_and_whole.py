@@ -90,8 +90,8 @@ def test_stresses(cell: str) -> None:
     assert np.abs(half - full).max() < SAME * np.abs(full).max()
 
 
-PLAIN = [(cell, SAME) for cell in ("quad4", "quad8", "quad9", "tri6")]
-CUT = [(cell, 1e-5) for cell in ("tet10", "hex20")]
+PLAIN = [(cell, SAME) for cell in ("tri3", "quad4", "quad8", "quad9", "tri6")]
+CUT = [("tet4", 3e-5), ("tet10", 1e-5), ("hex20", 1e-5)]
 
 
 @pytest.mark.parametrize(("cell", "same"), PLAIN + CUT)
