@@ -48,8 +48,8 @@ class PairState:
     """A pair with its multipliers, their status, and the slips (n, 4) of those of friction, as in its history; limit:
     of the tangential traction, None without friction; pressure, weight int H_k, weighted gap and contact of the multipliers
     that are pressures (of a tie: all); contactor: where it is now, which that of a tie's pair is not; mended: (9 n_facets,)
-    facet-wise coefficients of the pressure that is shown in place of the multipliers', of the same force, theory (Z12); exact:
-    (n_facets,) facets of first order on which its nodal forces are those of the bodies themselves, None for none."""
+    facet-wise coefficients of the pressure that is shown in place of the multipliers', of the same force, theory (Z12);
+    exact: (n_facets,) facets of first order on which its nodal forces are those of bodies, None for none."""
 
     pair: Pair
     multipliers: NDArray[np.float64]

@@ -1,5 +1,5 @@
-"""Pressures and stresses of triangles and tetrahedra of first order without what their straight displacements leave of forces:
-a deferred correction, theory (Z11), (Z12)."""
+"""Pressures and stresses of triangles and tetrahedra of first order without the forces that their straight displacements
+leave: a deferred correction, theory (Z11), (Z12)."""
 
 from __future__ import annotations
 
@@ -33,8 +33,9 @@ Solve = Callable[[Attempt, Imposed], Attempt]
 
 @dataclass(frozen=True)
 class Mended:
-    """What is shown of a step in place of its own. displacement: (n_points, dim), stress: at integration points; pressure: of
-    each pair facet-wise coefficients (9 n_facets,), of the resultant of its multipliers, None where these stay."""
+    """From what pressures and surface stresses of a step are shown. displacement: (n_points, dim), stress: at integration
+    points; pressure: of each pair facet-wise coefficients (9 n_facets,), of the force of its multipliers, None where these
+    stay."""
 
     displacement: NDArray[np.float64]
     stress: PointStress

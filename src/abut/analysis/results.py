@@ -108,7 +108,7 @@ def step_result(
     contacts = _contacts(end, attempt, before, averages(solids, sampled), shown)
     change = heated(model, assembled.loaded, end.motion)
     known = known_stress(model, points, moved, state.time, change, list(zip(balance.pairs, contacts)))
-    values = recovered(solids, points, sampled, known)
+    values = recovered(solids, points, own, known)
     stress = at_points(solids.patches, values, len(points))
     told = _finite_energy if model.finite else _energy
     acting, work = told(end, attempt, acted, contacts, before)
@@ -338,7 +338,9 @@ def _contacts(
     states = (PairState.of(*state, balance.factors, _now(end, state[0])) for state in found)
     if shown is not None:
         states = (
-            state if pressure is None else replace(state, mended=pressure, exact=of_simplices(model.mesh, state.contactor))
+            state
+            if pressure is None
+            else replace(state, mended=pressure, exact=of_simplices(model.mesh, state.contactor))
             for state, pressure in zip(states, shown.pressure)
         )
     return tuple(

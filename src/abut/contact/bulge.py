@@ -318,8 +318,8 @@ def _on_planes(normals: Array, plain: Surface, points: NDArray[np.int64], rim: N
 
 
 def _goes_on(plain: Surface, points: NDArray[np.int64], directions: Array) -> NDArray[np.bool_]:
-    """Whether facets at points (n,) lie on both sides of planes through them with normals (n, dim), as of a body that is held
-    in its middle: it has no image there."""
+    """Whether facets at points (n,) lie on both sides of planes through them with normals (n, dim), as of a body that is
+    held in its middle: it has no image there."""
     used = plain.nodes >= 0
     facet, local = np.nonzero(used)
     has = sp.csr_matrix((np.ones(len(facet)), (plain.nodes[facet, local], facet)), (len(plain.points), len(plain)))

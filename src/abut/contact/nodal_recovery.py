@@ -38,8 +38,8 @@ class Averages:
     corners: (n_facets, 9) point of each corner of the facets, -1 where padded; moments: (n_facets, 9, 9) int N_i H_k over
     the covered part, mass: (n_facets, 9, 9) int N_i N_j; weight: (n_points,) int N_i there, area; share: (n_points,) the
     same over int N_i on the whole contactor, 0 at points that are no corners of it; shared: (n_points,) the point whose
-    average each one shows, itself but on the axis of linear cells; exact: (n_facets,) facets of first order with nodal forces as
-    accurate as on those of second.
+    average each one shows, itself but on the axis of linear cells; exact: (n_facets,) facets of first
+    order with nodal forces as accurate as on those of second.
     """
 
     surface: Surface
@@ -123,7 +123,8 @@ def _divided(values: NDArray[np.float64], weight: NDArray[np.float64]) -> NDArra
 
 
 def averages(contactor: Surface, coupling: Coupling, exact: NDArray[np.bool_] | None = None) -> Averages:
-    """What it takes to average fields on a contactor; coupling: of degree 1 or 2; exact: as in ``Averages``, None for none."""
+    """What it takes to average fields on a contactor; coupling: of degree 1 or 2; exact: as in ``Averages``, none if
+    None."""
     exact = np.zeros(len(contactor), dtype=bool) if exact is None else exact
     contactor, _ = split_at_creases(contactor)
     corners = np.full(contactor.nodes.shape, -1, dtype=np.int64)
@@ -143,7 +144,14 @@ def averages(contactor: Surface, coupling: Coupling, exact: NDArray[np.bool_] | 
     )
     share = np.where(whole > 0.0, weight / np.where(whole > 0.0, whole, 1.0), 0.0)
     return Averages(
-        contactor, corners, moments, mass, np.where(share > NO_SUPPORT, weight, 0.0), share, _shared(contactor, exact), exact
+        contactor,
+        corners,
+        moments,
+        mass,
+        np.where(share > NO_SUPPORT, weight, 0.0),
+        share,
+        _shared(contactor, exact),
+        exact,
     )
 
 
