@@ -131,11 +131,13 @@ def test_an_amplitude_that_begins_elsewhere_jumps_there(tmp_path: Path) -> None:
     assert found == pytest.approx([5.0, 10.0, 20.0, 25.0, 30.0], rel=1e-5)
 
 
-def test_of_temperatures_given_twice_the_later_one_holds(tmp_path: Path) -> None:
-    """In a step, as of supports; loads given twice add up."""
+def test_of_values_given_twice_the_later_one_holds(tmp_path: Path) -> None:
+    """In a step, of temperatures and of supports; loads given twice add up."""
     text = BAR + step("*TEMPERATURE", "ALL, 4.\nALL, 10.")
     assert heights(tmp_path, text, 1) == pytest.approx([-0.01], rel=1e-9)
     both = BAR + step("*TEMPERATURE", "ALL, 4.", "*TEMPERATURE", "ALL, 10.")
     assert heights(tmp_path, both, 1) == pytest.approx([-0.01], rel=1e-9)
+    held = BAR + step("*BOUNDARY", "TOP, 3, 3, -0.004\nTOP, 3, 3, -0.01")
+    assert heights(tmp_path, held, 1) == pytest.approx([0.01], rel=1e-9)
     loads = BAR + step("*DLOAD", "1, P2, 4.", "*DLOAD", "1, P2, 10.")
     assert heights(tmp_path, loads, 1) == pytest.approx([0.014], rel=1e-9)

@@ -153,13 +153,17 @@ def test_strides_are_followed() -> None:
 
 
 def test_where_the_way_ahead_is_new() -> None:
+    """Nor does anything go on as in a step before where there was none."""
     pace = Pace([0.1, 1.0], kinks=(0.1,))
     assert not pace.turned
+    assert not pace.goes_on
     pace.take(1)
     assert pace.time == 0.1
     assert pace.turned
+    assert not pace.goes_on
     pace.take(1)
     assert not pace.turned
+    assert pace.goes_on
 
 
 def test_given_numbers_and_times() -> None:

@@ -13,56 +13,31 @@ from abut.errors import InputError
 from abut.expression import Expression, Expressions
 from abut.io.atomic import write_text
 from abut.job.load import Job
+from abut.job.load_tables import LOADS
+from abut.job.material_tables import MATERIALS
 from abut.job.schema import JobFile
 from abut.job.times import with_shares, with_times
-from abut.materials.anisotropic import Anisotropic, Orthotropic
-from abut.materials.elastic import LinearElastic
-from abut.materials.hyperelastic import NeoHooke
-from abut.materials.logarithmic import Hencky
 from abut.materials.material import Material
-from abut.materials.plastic import Plastic
-from abut.materials.rubber import ArrudaBoyce, MooneyRivlin, Ogden, Yeoh
 from abut.materials.temperature import OverTemperature
 from abut.mesh.write import write_mesh
 from abut.model import (
     Amplitude,
     BodyForce,
     Buckling,
-    Centrifugal,
     Contact,
-    Force,
     Frequencies,
-    Gravity,
     Integration,
     Load,
     Model,
-    Moment,
-    NodalForce,
-    Pressure,
     SolveOptions,
-    Temperature,
-    Traction,
 )
 from abut.output.options import EVERYTHING, Output
 from abut.types import Json
 
-KINDS: dict[type, str] = {
-    Pressure: "pressure",
-    Traction: "traction",
-    Force: "force",
-    Moment: "moment",
-    NodalForce: "nodal-force",
-    Temperature: "temperature",
-    Gravity: "gravity",
-    Centrifugal: "centrifugal",
-}
+LOAD_KINDS = {record: kind for kind, record in LOADS.items()}
 
 
-MATERIALS: dict[type, str] = {
-    LinearElastic: "linear-elastic", NeoHooke: "neo-hooke", Hencky: "hencky", Plastic: "plastic",
-    Orthotropic: "orthotropic", Anisotropic: "anisotropic", OverTemperature: "over-temperature",
-    MooneyRivlin: "mooney-rivlin", Yeoh: "yeoh", Ogden: "ogden", ArrudaBoyce: "arruda-boyce",
-}  # fmt: skip
+MATERIAL_KINDS = {record: kind for kind, record in MATERIALS.items()}
 
 
 def write_job(path: Path, job: Job) -> list[Path]:
@@ -83,7 +58,7 @@ def job_table(model: Model, mesh: str, output: Output = EVERYTHING) -> Json:
     """The job file of a model as nested tables, with ``mesh`` the file of its mesh."""
     materials: dict[Material, str] = {}
     for solid in model.solids:
-        if type(solid.material) not in MATERIALS:
+        if type(solid.material) not in MATERIAL_KINDS:
             raise InputError(f"solid '{solid.body}': job files know materials of abut's own only, not one of yours")
         for material in (*_parts(solid.material), solid.material):
             materials.setdefault(material, f"material-{len(materials) + 1}")
@@ -135,7 +110,7 @@ def job_table(model: Model, mesh: str, output: Output = EVERYTHING) -> Json:
 
 def material_table(material: Material) -> Json:
     """One of abut's own materials as a table of a job file, those that it is made of aside."""
-    return {"kind": MATERIALS[type(material)], **_plain(material)}
+    return {"kind": MATERIAL_KINDS[type(material)], **_plain(material)}
 
 
 def _parts(material: Material) -> Sequence[Material]:
@@ -146,7 +121,7 @@ def _parts(material: Material) -> Sequence[Material]:
 def _load(load: Load) -> Json:
     if isinstance(load, BodyForce):
         raise InputError("a job file holds no body force; use gravity")
-    return {"kind": KINDS[type(load)], **_plain(load)}
+    return {"kind": LOAD_KINDS[type(load)], **_plain(load)}
 
 
 def _contact(contact: Contact) -> Json:

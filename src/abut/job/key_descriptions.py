@@ -53,7 +53,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "kinematics": "small displacements and strains, or finite ones: balance of forces in the deformed configuration; "
         "small-strain: linear bodies whose strains and turns are small, contact where they have moved to, however far",
     },
-    "MaterialTable": {
+    "LinearElasticTable": {
         "kind": "the material law",
         "young": "Young's modulus, > 0 [force/length^2]",
         "poisson": "Poisson's ratio, between -1 and 0.5; 0.5 with integration mixed, b-bar or reduced",

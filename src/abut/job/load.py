@@ -14,38 +14,27 @@ from abut.contact.overclosure import PressureOverclosure
 from abut.errors import InputError, nearest
 from abut.io.toml import read_toml
 from abut.job.contacts import Resolved, resolve_contacts
-from abut.job.material_tables import Materials, OverTemperatureTable
+from abut.job.load_tables import LOADS
+from abut.job.material_tables import MATERIALS
 from abut.job.other_names import key_called, kind_said
 from abut.job.parameters import parameters, worked_out
 from abut.job.schema import EquationTable, JobFile, MeshTable
 from abut.job.times import with_shares
 from abut.job.values import values
-from abut.materials.anisotropic import Anisotropic, Orthotropic
-from abut.materials.elastic import LinearElastic
-from abut.materials.hyperelastic import NeoHooke
-from abut.materials.logarithmic import Hencky
 from abut.materials.material import Material
-from abut.materials.plastic import Plastic
-from abut.materials.rubber import ArrudaBoyce, MooneyRivlin, Ogden, Yeoh
 from abut.materials.temperature import OverTemperature
 from abut.mesh import make
 from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
 from abut.model import (
     Buckling,
-    Centrifugal,
     Coupling,
     Equation,
-    Force,
     Frequencies,
-    Gravity,
     Hold,
     Load,
     Model,
-    Moment,
-    NodalForce,
     Preload,
-    Pressure,
     Probe,
     Rigid,
     Rotation,
@@ -53,9 +42,7 @@ from abut.model import (
     SolveOptions,
     Spring,
     Support,
-    Temperature,
     Term,
-    Traction,
 )
 from abut.output.options import Output
 from abut.types import Json
@@ -63,19 +50,6 @@ from abut.types import Json
 GENERATORS: Mapping[str, Callable[..., Mesh]] = {
     name.replace("_", "-"): getattr(make, name) for name in make.__all__ if name != "join"
 }
-
-LOADS: Mapping[str, Callable[..., Load]] = {
-    "pressure": Pressure, "traction": Traction, "force": Force, "moment": Moment,
-    "nodal-force": NodalForce, "temperature": Temperature, "gravity": Gravity, "centrifugal": Centrifugal,
-}  # fmt: skip
-
-
-MATERIALS: Mapping[str, Callable[..., Material]] = {
-    "linear-elastic": LinearElastic, "neo-hooke": NeoHooke, "hencky": Hencky, "plastic": Plastic,
-    "orthotropic": Orthotropic, "anisotropic": Anisotropic, "over-temperature": OverTemperature,
-    "mooney-rivlin": MooneyRivlin, "yeoh": Yeoh, "ogden": Ogden, "arruda-boyce": ArrudaBoyce,
-}  # fmt: skip
-
 
 # pydantic's names for one of several types that a value may have
 CHOICES = ("str", "int", "float", "list[str]", "list[float]", "list[list[float]]")
@@ -205,29 +179,31 @@ def _equation(table: EquationTable, where: str) -> Equation:
         raise InputError(str(error) if str(error).startswith(where) else f"{where}: {error}") from None
 
 
-def _materials(tables: Mapping[str, Materials]) -> dict[str, Material]:
+def _materials(tables: Mapping[str, Any]) -> dict[str, Material]:
     """By name; those made of others come after these."""
-    made = {n: _material(n, table, {}) for n, table in tables.items() if not isinstance(table, OverTemperatureTable)}
+    made = {n: _material(n, table, {}) for n, table in tables.items() if MATERIALS[table.kind] is not OverTemperature}
     return {name: made.get(name) or _material(name, table, made) for name, table in tables.items()}
 
 
-def _material(name: str, table: Materials, others: Mapping[str, Material]) -> Material:
+def _material(name: str, table: Any, others: Mapping[str, Material]) -> Material:
     given = values(table, f"materials.{name}")
-    if isinstance(table, OverTemperatureTable):
+    if MATERIALS[table.kind] is OverTemperature:
         for i, other in enumerate(table.materials):
             if other not in others:
                 where = f"materials.{name}.materials[{i}]"
                 raise InputError(f"{where}: no other material named {other!r}{nearest(other, others)}")
         given["materials"] = tuple(others[other] for other in table.materials)
     try:
-        return MATERIALS[given.pop("kind")](**given)
+        made: Material = MATERIALS[given.pop("kind")](**given)
+        return made
     except InputError as error:
         raise InputError(f"materials.{name}.{error}") from None
 
 
 def _load(table: BaseModel, where: str) -> Load:
     given = values(table, where)
-    return LOADS[given.pop("kind")](**given)
+    made: Load = LOADS[given.pop("kind")](**given)
+    return made
 
 
 def _mesh(table: MeshTable, folder: Path, refine: int) -> Mesh:

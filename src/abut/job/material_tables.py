@@ -1,38 +1,28 @@
-"""Materials of a job file."""
+"""Materials of a job file: what they are called, and their tables, derived from their records."""
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Mapping
+from typing import Annotated, Any
 
 from pydantic import Field
 
 from abut.axes import KINDS as AXES
+from abut.job.derived import Numbers, one_of, table_of
 from abut.job.table import Number, OneOf, Table
-from abut.materials.hyperelastic import VOLUMETRIC
+from abut.materials.anisotropic import Anisotropic, Orthotropic
+from abut.materials.elastic import LinearElastic
+from abut.materials.hyperelastic import VOLUMETRIC, NeoHooke
+from abut.materials.logarithmic import Hencky
+from abut.materials.plastic import Plastic
+from abut.materials.rubber import ArrudaBoyce, MooneyRivlin, Ogden, Yeoh
+from abut.materials.temperature import OverTemperature
 
-Three = Annotated[list[Number], Field(min_length=3, max_length=3)]
-
-
-class MaterialTable(Table):
-    kind: Literal["linear-elastic"]
-    young: Number
-    poisson: Number
-    density: Number = 0.0
-    expansion: Number = 0.0
-
-
-class NeoHookeTable(Table):
-    """young and poisson, or shear and bulk, or shear and lame"""
-
-    kind: Literal["neo-hooke"]
-    young: Number | None = None
-    poisson: Number | None = None
-    shear: Number | None = None
-    bulk: Number | None = None
-    lame: Number | None = None
-    volumetric: Annotated[str, OneOf(VOLUMETRIC)] = VOLUMETRIC[0]
-    density: Number = 0.0
-    expansion: Number = 0.0
+MATERIALS: Mapping[str, type] = {
+    "linear-elastic": LinearElastic, "orthotropic": Orthotropic, "anisotropic": Anisotropic,
+    "over-temperature": OverTemperature, "neo-hooke": NeoHooke, "hencky": Hencky, "plastic": Plastic,
+    "mooney-rivlin": MooneyRivlin, "yeoh": Yeoh, "ogden": Ogden, "arruda-boyce": ArrudaBoyce,
+}  # fmt: skip
 
 
 class AxesTable(Table):
@@ -45,94 +35,19 @@ class AxesTable(Table):
     xy: list[Number] | None = None
 
 
-class LocalTable(Table):
-    axes: AxesTable | None = None
-    density: Number = 0.0
-    expansion: Number | Three = 0.0
+def _long(least: int, most: int | None = None) -> Any:
+    return Field(min_length=least, max_length=most)
 
 
-class OrthotropicTable(LocalTable):
-    kind: Literal["orthotropic"]
-    young: Three
-    poisson: Three
-    shear: Three
+THREE = Annotated[Numbers, _long(3, 3)]
+LOCAL: Mapping[str, Any] = {"axes": AxesTable | None, "expansion": Number | THREE}
+SAID: Mapping[type, Mapping[str, Any]] = {  # types of keys that say more than the record's
+    NeoHooke: {"volumetric": Annotated[str, OneOf(VOLUMETRIC)]},
+    Orthotropic: {**LOCAL, "young": THREE, "poisson": THREE, "shear": THREE},
+    Anisotropic: {**LOCAL, "constants": Annotated[Numbers, _long(21, 21)]},
+    OverTemperature: {"temperatures": Annotated[Numbers, _long(1)], "materials": Annotated[list[str], _long(1)]},
+}
+MEANING: Mapping[type, str] = {NeoHooke: "young and poisson, or shear and bulk, or shear and lame"}
 
-
-class AnisotropicTable(LocalTable):
-    kind: Literal["anisotropic"]
-    constants: Annotated[list[Number], Field(min_length=21, max_length=21)]
-
-
-class OverTemperatureTable(Table):
-    kind: Literal["over-temperature"]
-    temperatures: Annotated[list[Number], Field(min_length=1)]
-    materials: Annotated[list[str], Field(min_length=1)]
-    initial_temperature: Number = 0.0
-    zero: Number | None = None
-
-
-class HenckyTable(Table):
-    kind: Literal["hencky"]
-    young: Number
-    poisson: Number
-    density: Number = 0.0
-    expansion: Number = 0.0
-
-
-Pairs = list[Annotated[list[Number], Field(min_length=2, max_length=2)]]
-
-
-class PlasticTable(Table):
-    kind: Literal["plastic"]
-    young: Number
-    poisson: Number
-    yield_stress: Number | Pairs
-    hardening: Number = 0.0
-    saturation: Number = 0.0
-    rate: Number = 0.0
-    backstresses: Pairs = []
-    density: Number = 0.0
-    expansion: Number = 0.0
-
-
-class RubberTable(Table):
-    bulk: Number | list[Number]
-    density: Number = 0.0
-    expansion: Number = 0.0
-
-
-class MooneyRivlinTable(RubberTable):
-    kind: Literal["mooney-rivlin"]
-    c10: Number
-    c01: Number
-
-
-class YeohTable(RubberTable):
-    kind: Literal["yeoh"]
-    c10: Number
-    c20: Number = 0.0
-    c30: Number = 0.0
-
-
-class OgdenTable(RubberTable):
-    kind: Literal["ogden"]
-    terms: Pairs
-
-
-class ArrudaBoyceTable(RubberTable):
-    kind: Literal["arruda-boyce"]
-    shear: Number
-    locking: Number
-
-
-Rubber = MooneyRivlinTable | YeohTable | OgdenTable | ArrudaBoyceTable
-Materials = (
-    MaterialTable
-    | OrthotropicTable
-    | AnisotropicTable
-    | OverTemperatureTable
-    | NeoHookeTable
-    | HenckyTable
-    | PlasticTable
-    | Rubber
-)
+TABLES = tuple(table_of(record, SAID.get(record), MEANING.get(record), kind) for kind, record in MATERIALS.items())
+MATERIAL = one_of(TABLES)

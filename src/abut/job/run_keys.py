@@ -8,7 +8,7 @@ RUN: dict[str, dict[str, str]] = {
         "stiffening": "whether stresses at the end of the last step change the stiffness; under finite kinematics always",
     },
     "BucklingTable": {"count": "how many positive factors, from the smallest"},
-    "SolveTable": {
+    "SolveOptionsTable": {
         "steps": "load steps, equal parts of a linear ramp; auto: one, with friction as many as the onset of slip takes. "
         "With friction, a step that does not converge is taken in parts, of which only the end is written. With contact "
         "under finite kinematics a number gives the longest step, and auto leaves all of them to abut",

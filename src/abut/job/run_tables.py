@@ -4,33 +4,21 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field, WithJsonSchema
+from pydantic import Field
 
-from abut.job.table import Number, OneOf, Table
+from abut.job.derived import table_of
+from abut.job.table import Number, OneOf, Table, Time
 from abut.model.modes import Buckling, Frequencies
 from abut.model.solve_options import LINEAR, SolveOptions
 from abut.model.step_choice import WORDS as STEPS
 from abut.output.options import COMPRESSIONS, FAST, FIELDS, FORMATS, USUAL, VTU
 
-Time = Annotated[Number, WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "string"}]})]  # or the name of a step
-
-
-class FrequenciesTable(Table):
-    count: int = Frequencies.count
-    stiffening: bool = Frequencies.stiffening
-
-
-class BucklingTable(Table):
-    count: int = Buckling.count
-
-
-class SolveTable(Table):
-    steps: int | Literal["auto"] = SolveOptions.steps
-    linear: Annotated[str, OneOf(LINEAR)] = SolveOptions.linear
-    max_iterations: int = SolveOptions.max_iterations
-    times: list[Time] | None = None
-    seconds: Number | None = None
-    end: Number = 1.0
+FREQUENCIES = table_of(Frequencies)
+BUCKLING = table_of(Buckling)
+SOLVE = table_of(
+    SolveOptions,
+    {"steps": int | Literal["auto"], "linear": Annotated[str, OneOf(LINEAR)], "times": list[Time] | None},
+)
 
 
 class StepTable(Table):

@@ -4,43 +4,24 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, WithJsonSchema
-from pydantic_core import PydanticCustomError
+from pydantic import BaseModel, ConfigDict, Field, WithJsonSchema
 
 from abut.bodies.integration import INTEGRATIONS
-from abut.errors import InputError
-from abut.fields import number_or_field
+from abut.job.derived import Of, table_of
 from abut.job.key_descriptions import describe
-from abut.job.material_tables import AxesTable, Materials
-from abut.job.run_tables import BucklingTable, FrequenciesTable, OutputTable, SolveTable, StepTable, Time
-from abut.job.table import Number, OneOf, Table
+from abut.job.load_tables import LOAD
+from abut.job.material_tables import MATERIAL, AxesTable
+from abut.job.run_tables import BUCKLING, FREQUENCIES, SOLVE, OutputTable, StepTable
+from abut.job.table import Number, OneOf, Points, Table, Time, Varying
+from abut.model import Hold, Preload, Rotation, Spring
 from abut.model.contact import GEOMETRIES, KINDS, LAWS, METHODS, PRESSURES, RULES, Contact, Integration
 from abut.model.coupling import KINDS as COUPLINGS
 from abut.model.coupling import Coupling
-from abut.model.hold import STAY, Hold
+from abut.model.hold import STAY
 from abut.model.kinematics import KINEMATICS
 from abut.model.probe import QUANTITIES
 from abut.model.step_choice import WORDS as STEPS
 from abut.types import Json
-
-HISTORY = "pairs of time (0 to 1 over all steps) and factor; linear between; left out: the factor is the time"
-Points = Annotated[list[Annotated[list[Time], Field(min_length=2, max_length=2)]], Field(description=HISTORY)]
-
-
-def _varying(value: object) -> object:
-    """The value if it is a number or an expression, which the model's own record makes of it."""
-    if isinstance(value, bool) or not isinstance(value, (str, int, float)):
-        raise PydanticCustomError("varying", "Input should be a number or an expression of x, y, z")
-    try:
-        number_or_field(value, "")
-    except InputError as error:
-        said = str(error).removeprefix(": ").partition(", got")[0]
-        raise PydanticCustomError("varying", "{said}", {"said": said}) from None
-    return value
-
-
-Varying = Annotated[Any, AfterValidator(_varying), WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "string"}]})]
-
 
 # Checked by the model's own record, which says once what is wrong where a choice of types would say it for each.
 Friction = Annotated[
@@ -156,142 +137,25 @@ Law = Annotated[
 ]
 
 
-class SpringTable(Table):
-    """springs to the ground, between points, or under a surface"""
-
-    name: str
-    on: str
-    to: str = ""
-    x: Law = None
-    y: Law = None
-    z: Law = None
-    normal: Law = None
-    along: Law = None
-    per_area: bool = False
-    weak: bool = False
-    point: list[Number] | None = None
-
-
 Led = Annotated[Any, WithJsonSchema({"anyOf": [{"type": "number"}, {"const": STAY}]})]
 
 
-class HoldTable(Table):
-    """a support that comes or goes on the way"""
-
-    on: str
-    name: str = ""
-    x: Led = None
-    y: Led = None
-    z: Led = None
-    since: Time = Hold.since
-    reached: Time | None = None
-    until: Time | None = None
-    released: Time | None = None
-    amplitude: Points | None = None
-
-
-class PreloadTable(Table):
-    """a section of a body whose two sides are drawn together, as tightening does to a bolt"""
-
-    name: str
-    body: str = ""
-    point: list[Number] | None = None
-    normal: list[Number] | None = None
-    surface: str = ""
-    force: Number | None = None
-    shortening: Number | None = None
-    amplitude: Points | None = None
-    lock: Time | None = None
-
-
-class RotationTable(Table):
-    """rotation about an axis, exactly on arcs"""
-
-    on: str
-    angle: Number
-    centre: list[Number]
-    axis: list[Number] | None = None
-    amplitude: Points | None = None
-
-
-class ScalarTable(Table):
-    """Something with a number at a place."""
-
-    kind: str
-    on: str
-    value: Number
-    amplitude: Points | None = None
-
-
-class VectorTable(Table):
-    """Something with a vector at a place."""
-
-    kind: str
-    on: str
-    value: list[Number]
-    amplitude: Points | None = None
-
-
-class PressureTable(ScalarTable):
-    kind: Literal["pressure"]
-    value: Varying
-    follows: bool = True
-
-
-class TractionTable(VectorTable):
-    kind: Literal["traction"]
-    value: list[Varying]
-
-
-class ForceTable(VectorTable):
-    kind: Literal["force"]
-    bearing: bool = False
-
-
-class MomentTable(VectorTable):
-    kind: Literal["moment"]
-
-
-class NodalForceTable(VectorTable):
-    """force at each node of the set"""
-
-    kind: Literal["nodal-force"]
-
-
-class TemperatureTable(ScalarTable):
-    """change of temperature at the nodes, degrees"""
-
-    kind: Literal["temperature"]
-    value: Varying
-
-
-class GravityTable(Table):
-    kind: Literal["gravity"]
-    value: list[Number]
-    on: str | None = None
-    amplitude: Points | None = None
-
-
-class CentrifugalTable(Table):
-    kind: Literal["centrifugal"]
-    speed: Number
-    axis: list[Number] | None = None
-    through: list[Number] | None = None
-    on: str | None = None
-    amplitude: Points | None = None
-
-
-LoadTable = Annotated[
-    PressureTable
-    | TractionTable
-    | ForceTable
-    | MomentTable
-    | NodalForceTable
-    | TemperatureTable
-    | GravityTable
-    | CentrifugalTable,
-    Field(discriminator="kind"),
-]
+ROTATION = table_of(Rotation, meaning="rotation about an axis, exactly on arcs")
+PRELOAD = table_of(
+    Preload,
+    {"lock": Time | None},
+    "a section of a body whose two sides are drawn together, as tightening does to a bolt",
+)
+SPRING = table_of(
+    Spring,
+    dict.fromkeys(("x", "y", "z", "normal", "along"), Law),
+    "springs to the ground, between points, or under a surface",
+)
+HOLD = table_of(
+    Hold,
+    {**dict.fromkeys("xyz", Led), "since": Time, **dict.fromkeys(("reached", "until", "released"), Time | None)},
+    "a support that comes or goes on the way",
+)
 
 
 class IntegrationTable(Table):
@@ -347,23 +211,23 @@ class JobFile(Table):
     parameters: dict[str, Number | str] = {}
     mesh: MeshTable
     model: ModelTable = ModelTable()
-    materials: dict[str, Annotated[Materials, Field(discriminator="kind")]]
+    materials: dict[str, Annotated[Table, MATERIAL]]
     solids: list[SolidTable]
     supports: list[SupportTable] = []
-    loads: list[LoadTable] = []
+    loads: list[Annotated[Table, LOAD]] = []
     contacts: list[ContactTable] = []
     equations: list[EquationTable] = []
     rigid: list[RigidTable] = []
-    rotations: list[RotationTable] = []
+    rotations: list[Annotated[Table, Of(ROTATION)]] = []
     couplings: list[CouplingTable] = []
-    preloads: list[PreloadTable] = []
-    springs: list[SpringTable] = []
-    holds: list[HoldTable] = []
+    preloads: list[Annotated[Table, Of(PRELOAD)]] = []
+    springs: list[Annotated[Table, Of(SPRING)]] = []
+    holds: list[Annotated[Table, Of(HOLD)]] = []
     probes: list[ProbeTable] = []
     steps: list[StepTable] = []
-    frequencies: FrequenciesTable | None = None
-    buckling: BucklingTable | None = None
-    solve: SolveTable = SolveTable()
+    frequencies: Annotated[Table, Of(FREQUENCIES)] | None = None
+    buckling: Annotated[Table, Of(BUCKLING)] | None = None
+    solve: Annotated[Table, Of(SOLVE)] = SOLVE()
     output: OutputTable = OutputTable()
 
 

@@ -5,8 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, WithJsonSchema
+from pydantic_core import PydanticCustomError
 from pydantic_core.core_schema import CoreSchema, literal_schema
+
+from abut.errors import InputError
+from abut.fields import number_or_field
 
 
 class Table(BaseModel):
@@ -16,6 +20,9 @@ class Table(BaseModel):
 
 
 Number = Annotated[float, Field(strict=False)]
+Time = Annotated[Number, WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "string"}]})]  # or the name of a step
+HISTORY = "pairs of time (0 to 1 over all steps) and factor; linear between; left out: the factor is the time"
+Points = Annotated[list[Annotated[list[Time], Field(min_length=2, max_length=2)]], Field(description=HISTORY)]
 
 
 @dataclass(frozen=True)
@@ -26,3 +33,18 @@ class OneOf:
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
         return literal_schema(list(self.choices))
+
+
+def _varying(value: object) -> object:
+    """The value if it is a number or an expression, which the model's own record makes of it."""
+    if isinstance(value, bool) or not isinstance(value, (str, int, float)):
+        raise PydanticCustomError("varying", "Input should be a number or an expression of x, y, z")
+    try:
+        number_or_field(value, "")
+    except InputError as error:
+        said = str(error).removeprefix(": ").partition(", got")[0]
+        raise PydanticCustomError("varying", "{said}", {"said": said}) from None
+    return value
+
+
+Varying = Annotated[Any, AfterValidator(_varying), WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "string"}]})]

@@ -1,0 +1,27 @@
+"""Loads of a job file: what they are called, and their tables, derived from their records."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from abut.job.derived import one_of, table_of
+from abut.job.table import Varying
+from abut.model import Centrifugal, Force, Gravity, Moment, NodalForce, Pressure, Temperature, Traction
+
+LOADS: Mapping[str, type] = {
+    "pressure": Pressure, "traction": Traction, "force": Force, "moment": Moment,
+    "nodal-force": NodalForce, "temperature": Temperature, "gravity": Gravity, "centrifugal": Centrifugal,
+}  # fmt: skip
+SAID: Mapping[type, Mapping[str, Any]] = {  # types of keys that say more than the record's
+    Pressure: {"value": Varying},
+    Traction: {"value": list[Varying]},
+    Temperature: {"value": Varying},
+}
+MEANING: Mapping[type, str] = {
+    NodalForce: "force at each node of the set",
+    Temperature: "change of temperature at the nodes, degrees",
+}
+
+TABLES = tuple(table_of(record, SAID.get(record), MEANING.get(record), kind) for kind, record in LOADS.items())
+LOAD = one_of(TABLES)
