@@ -263,8 +263,8 @@ class Run:
             found = None
         if found is None:
             self.told.note(
-                f"step {attempt.number}: pressures and stresses of triangles and tetrahedra of first order are shown as they are "
-                "solved: contact was not found again under the forces that their straight displacements leave"
+                f"step {attempt.number}: pressures and stresses of triangles and tetrahedra of first order are shown as "
+                "they are solved: contact was not found again under the forces that their straight displacements leave"
             )
         return found
 

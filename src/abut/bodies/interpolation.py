@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from abut._core import shape_functions
 from abut.bodies.recovery import compliances
@@ -14,6 +15,7 @@ from abut.cells import CELLS
 from abut.materials.places import uniform_expansion
 from abut.mesh.quadrature import gauss_rule
 
+Ids = NDArray[np.int32]
 SIMPLEX = ("tri3", "tet4")
 ROWS = ((0, 3, 5), (3, 1, 4), (5, 4, 2))  # of a tensor, in xx yy zz xy yz zx
 ORDER = 3  # of the rule round an axis; elsewhere the middle will do, in which slopes are those in the mean
@@ -49,7 +51,7 @@ def interpolation_forces(solids: Solids, stress: Sequence[Array | None], tempera
     return result
 
 
-def _thermal(solids: Solids, temperature: TemperatureChange, nodes: Array, cells: Array) -> Array:
+def _thermal(solids: Solids, temperature: TemperatureChange, nodes: Ids, cells: NDArray[np.int64]) -> Array:
     """Strain by nodal temperatures at the cells' nodes; what a body has all over has no gradient."""
     if temperature.nodes is None:
         return np.zeros(nodes.shape)
@@ -66,7 +68,7 @@ def _slopes(x: Array) -> tuple[Array, Array]:
     return np.concatenate([-inverse.sum(axis=1, keepdims=True), inverse], axis=1), volume
 
 
-def _forces(solids: Solids, kind: str, cells: tuple[Array, Array, Array], bend: Array, stiffness: Array) -> Array:
+def _forces(solids: Solids, kind: str, cells: tuple[Ids, Array, Array], bend: Array, stiffness: Array) -> Array:
     """Of each cell at its nodes, (n, k, dim). cells: nodes, slopes, volumes; bend: (n, dim, dim, dim) second derivatives."""
     nodes, slope, volume = cells
     x, (n, k, dim) = solids.points[nodes], slope.shape
@@ -107,10 +109,10 @@ def _voigt(gradient: Array, hoop: Array) -> Array:
 def _stiffness(compliance: Array, plane: str | None, dim: int) -> Array:
     """(n, c, c) of (n, 6, 6): of bodies in plane stress without what resists across."""
     if dim == 3:
-        return np.linalg.pinv(compliance, hermitian=True)
+        return np.asarray(np.linalg.pinv(compliance, hermitian=True))
     if plane == "stress":
         flat = np.zeros((len(compliance), 4, 4))
         own = np.ix_(range(len(compliance)), [0, 1, 3], [0, 1, 3])
         flat[own] = np.linalg.pinv(compliance[own], hermitian=True)
         return flat
-    return np.linalg.pinv(compliance, hermitian=True)[:, :4, :4]
+    return np.asarray(np.linalg.pinv(compliance, hermitian=True)[:, :4, :4])
