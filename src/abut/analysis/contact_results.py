@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from abut.analysis.certificate import NOTHING, Surroundings, certificate
 from abut.analysis.friction import friction_balance, friction_checks, friction_forces, friction_result
+from abut.analysis.interpolation_error import of_simplices
 from abut.analysis.sides import sides_check
 from abut.analysis.statistics import (
     LOADED,
@@ -82,6 +83,10 @@ class PairState:
         pressure, weight, gap = (values[every] for values in (multipliers, pair.weight, gap))
         limit = pair.friction(factors) if pair.frictional else None
         return cls(pair, multipliers, status, slips, limit, pressure, weight, gap, status[every] != OPEN, contactor)
+
+    def showing(self, mesh: Mesh, pressure: NDArray[np.float64] | None) -> PairState:
+        """The same that shows a ``mended`` pressure; None: its own."""
+        return self if pressure is None else replace(self, mended=pressure, exact=of_simplices(mesh, self.contactor))
 
     @cached_property
     def values(self) -> NDArray[np.float64]:

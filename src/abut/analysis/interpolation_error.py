@@ -13,6 +13,7 @@ from abut.analysis.known_stress import mirrored
 from abut.bodies.interpolation import SIMPLEX, interpolation_forces
 from abut.bodies.recovery import in_cells
 from abut.bodies.stress import PointStress
+from abut.contact.pressure_space import DUAL, DUAL_P1
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
 from abut.nonlinear.again import Imposed
@@ -98,7 +99,10 @@ def _of_resultant(
 ) -> NDArray[np.float64] | None:
     """Facet-wise coefficients of the pressure ``one``, in proportion, with the force of the multipliers."""
     pair, pressure = one
-    if pair.two_way:
+    if pair.two_way or pair.space.name not in (
+        DUAL,
+        DUAL_P1,
+    ):  # values of second order would sharpen what P1 oscillates by
         return None
     found, force = float(pressure @ pair.weight), float(own[1] @ own[0].weight)
     return np.asarray(pair.space.transfer @ pressure) * (force / found) if min(found, force) > 0.0 else None

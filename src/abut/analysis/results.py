@@ -15,7 +15,7 @@ from abut.analysis.energy import Acting, energy, pressing, tractions
 from abut.analysis.faceting import free_axes
 from abut.analysis.finite_energy import FiniteActing, finite_energy
 from abut.analysis.flow import flow, remembered
-from abut.analysis.interpolation_error import Mended, of_simplices
+from abut.analysis.interpolation_error import Mended
 from abut.analysis.known_stress import known_stress
 from abut.analysis.moved import largest_turn, slid
 from abut.analysis.overlap import covered_elsewhere, overlaps
@@ -336,16 +336,10 @@ def _contacts(
     )  # fmt: skip
     earlier = before[-1].contacts if before else [None] * len(balance.pairs)
     states = (PairState.of(*state, balance.factors, _now(end, state[0])) for state in found)
-    if shown is not None:
-        states = (
-            state
-            if pressure is None
-            else replace(state, mended=pressure, exact=of_simplices(model.mesh, state.contactor))
-            for state, pressure in zip(states, shown.pressure)
-        )
+    pressures = shown.pressure if shown else (None,) * len(balance.pairs)
     return tuple(
-        contact_result(model.mesh, state, residual, beside_it, one_before)
-        for state, beside_it, one_before in zip(states, around, earlier)
+        contact_result(model.mesh, state.showing(model.mesh, pressure), residual, *beside_it)
+        for state, pressure, *beside_it in zip(states, pressures, around, earlier)
     )
 
 
