@@ -21,6 +21,7 @@ import abut
 
 WRONG, FINE = 0.2, 0.03
 OF_CELLS = "stress error"  # a line about stresses, not about the pressure
+OF_LARGEST = "largest pressure"
 TELLING = 0.01  # true error from which on an estimate is compared with it
 
 
@@ -71,6 +72,7 @@ def summary(found: Sequence[Outcome]) -> list[list[str]]:
         ["with a warning only", share(wrong, "warn")],
         [f"true error below {FINE:.0%}: fails", share(fine, "FAIL")],
         ["warns", share(fine, "warn")],
+        ["of these only that the largest pressure is none, where the exact one has no bound", str(unbounded(fine))],
     ]
     for degree, name in ((1, "first"), (2, "second")):
         ratios = [o.estimate / o.error for o in found if o.order == degree and o.error > TELLING and o.estimate >= 0.0]
@@ -79,6 +81,12 @@ def summary(found: Sequence[Outcome]) -> list[list[str]]:
             text = f"{middle:.2f} in the median of {len(ratios)}, {low:.2f} to {high:.2f} of 80 %"
             rows.append([f"estimate over true error above {TELLING:.0%}, {name} order", text])
     return rows
+
+
+def unbounded(found: Sequence[Outcome]) -> int:
+    """How many warn of nothing but the largest pressure, which is right at a sharp edge."""
+    sharp = {case.name for case in cases() if not case.bounded}
+    return sum(o.verdict == "warn" and o.warned == (OF_LARGEST,) and o.name in sharp for o in found)
 
 
 def halves(found: Sequence[Outcome]) -> dict[str, list[Outcome]]:

@@ -173,7 +173,7 @@ def _by_slaves(model: abut.Model) -> abut.Model | None:
         replace(c, contactor=c.first, target=c.second, first="", second="") if c in other else c for c in model.contacts
     ]
     try:
-        return replace(model, contacts=contacts)
+        return replace(model, contacts=contacts, probes=())
     except InputError:
         return None
 

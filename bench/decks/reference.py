@@ -167,7 +167,9 @@ def _young(cards: Sequence[Card]) -> float:
 def _size(cards: Sequence[Card]) -> float:
     """Typical size of an element: of the box around all nodes, shared among the elements."""
     rows = [line.split(",") for card in cards if card.name == "NODE" for line in card.data]
-    extent = np.ptp(np.array([[float(x.strip() or 0.0) for x in (*row[1:4], "0", "0")[:3]] for row in rows]), axis=0)
+    extent = np.ptp(
+        np.array([[float(x.strip() or 0.0) for x in (*row[1:4], "0", "0", "0")[:3]] for row in rows]), axis=0
+    )
     extent = extent[extent > 1e-9 * extent.max()]
     count = sum(len(card.data) for card in cards if card.name == "ELEMENT")
     return float((np.prod(extent) / count) ** (1 / len(extent)))

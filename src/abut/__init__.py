@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from abut.materials.plastic import Plastic
     from abut.materials.rubber import ArrudaBoyce, MooneyRivlin, Ogden, Yeoh
     from abut.materials.temperature import OverTemperature
+    from abut.mesh.from_meshio import from_meshio
     from abut.mesh.mesh import Mesh
     from abut.model import (
         Amplitude,
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
         Model,
         Moment,
         NodalForce,
+        Penetration,
         Preload,
         Pressure,
         Probe,
@@ -54,6 +56,9 @@ if TYPE_CHECKING:
     from abut.output.results import write
     from abut.report import write_report
     from abut.solution import Solution
+    from abut.solution.mid_surface import MidSurface, mid_surface
+    from abut.thin.records import Beam, MidForce, MidSupport, Shell, Thick
+    from abut.thin.thicken import thicken
 
 __version__ = "0.2.0"
 
@@ -67,17 +72,21 @@ _HOME = {  # of public names that do not come from abut.model
     **dict.fromkeys(("Anisotropic", "Orthotropic"), "abut.materials.anisotropic"),
     **dict.fromkeys(("ArrudaBoyce", "MooneyRivlin", "Ogden", "Yeoh"), "abut.materials.rubber"),
     "OverTemperature": "abut.materials.temperature",
-    "PressureOverclosure": "abut.contact.overclosure", "check": "abut.diagnosis",
+    "from_meshio": "abut.mesh.from_meshio", "PressureOverclosure": "abut.contact.overclosure", "check": "abut.diagnosis",
+    **dict.fromkeys(("Beam", "MidForce", "MidSupport", "Shell", "Thick"), "abut.thin.records"),
+    "thicken": "abut.thin.thicken",
+    **dict.fromkeys(("MidSurface", "mid_surface"), "abut.solution.mid_surface"),
 }  # fmt: skip
 
 __all__ = [
-    "AbutError", "Amplitude", "Anisotropic", "ArrudaBoyce", "Axes", "BodyForce", "Buckling", "Centrifugal", "Contact",
-    "ConvergenceError", "Coupling", "Equation", "Force", "FoundContact", "Frequencies", "Gravity", "Hencky", "Hold",
-    "InputError", "Integration", "LinearElastic", "Mesh", "Model", "Moment", "MooneyRivlin", "NeoHooke", "NodalForce",
-    "Ogden", "Orthotropic", "Output", "OverTemperature", "Plastic", "Preload", "Pressure", "PressureOverclosure", "Probe",
-    "Rigid", "Rotation", "SingularModelError", "Solid", "Solution", "SolveOptions", "Spring", "Support", "Temperature",
-    "Term", "Traction", "Yeoh", "add_surfaces", "check", "find_contacts", "plot", "solve", "to_pyvista", "write",
-    "write_report",
+    "AbutError", "Amplitude", "Anisotropic", "ArrudaBoyce", "Axes", "Beam", "BodyForce", "Buckling", "Centrifugal",
+    "Contact", "ConvergenceError", "Coupling", "Equation", "Force", "FoundContact", "Frequencies", "Gravity", "Hencky",
+    "Hold", "InputError", "Integration", "LinearElastic", "Mesh", "MidForce", "MidSupport", "MidSurface", "Model",
+    "Moment", "MooneyRivlin", "NeoHooke", "NodalForce", "Ogden", "Orthotropic", "Output", "OverTemperature",
+    "Penetration", "Plastic", "Preload", "Pressure", "PressureOverclosure", "Probe", "Rigid", "Rotation", "Shell",
+    "SingularModelError", "Solid", "Solution", "SolveOptions", "Spring", "Support", "Temperature", "Term", "Thick",
+    "Traction", "Yeoh", "add_surfaces", "check", "find_contacts", "from_meshio", "mid_surface", "plot", "solve",
+    "thicken", "to_pyvista", "write", "write_report",
 ]  # fmt: skip
 
 

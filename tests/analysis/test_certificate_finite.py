@@ -16,7 +16,7 @@ from abut.analysis.run import Run
 from abut.diagnosis.cures import cures
 from abut.job import load_job
 from abut.mesh.make import join, rectangle
-from abut.nonlinear.load_step import Attempt
+from abut.nonlinear.attempt import Attempt
 from abut.problem.constraints import supports
 from abut.problem.contact_pairs import pair
 from abut.solution import Check, Solution, Step

@@ -10,7 +10,7 @@ import pytest
 from abut.analysis import run
 from abut.cli import main
 from abut.errors import Unsound
-from abut.nonlinear.load_step import Attempt
+from abut.nonlinear.attempt import Attempt
 
 JOB = """
 schema = 1

@@ -9,6 +9,7 @@ import pytest
 
 import abut
 from abut.mesh.make import box, join, ring
+from abut.solution import Check
 
 YIELD, STEPS = 300.0, 10
 SHORTEST = 1.0 / STEPS / 32  # of the time: parts of a step are halved down to a sixty-fourth, and taken up from there
@@ -30,7 +31,17 @@ def told(solution: abut.Solution) -> float:
     (time,) = [float(match[1]) for match in found if match]
     assert not solution.converged
     assert time == pytest.approx(solution.steps[-2].factor, rel=1e-4)
+    line = of_limit(solution)
+    assert line.verdict == "FAIL"
+    assert line.value == pytest.approx(1.0 - time, abs=1e-4)
+    assert f"limit load near time {time:.5g}" in line.meaning
     return time
+
+
+def of_limit(solution: abut.Solution) -> Check:
+    """The certificate's line."""
+    (line,) = (check for check in solution.certificate if check.name == "limit load")
+    return line
 
 
 @pytest.mark.parametrize("kinematics", ["small", "finite"])
@@ -61,6 +72,8 @@ def test_metal_that_hardens() -> None:
     solution = abut.solve(bar(1.2 * YIELD, hardening=1000.0))
     assert solution.converged
     assert not any("limit load" in note for note in solution.notes)
+    assert of_limit(solution).verdict == "pass"
+    assert of_limit(solution).value == 0.0
     moved = np.abs(solution.displacement[:, 0]).max() / 2.0
     assert moved == pytest.approx(1.2 * YIELD / 210e3 + 0.2 * YIELD / 1000.0, rel=1e-8)
 
@@ -70,4 +83,5 @@ def test_prescribed_displacements_go_on() -> None:
     held = [*model.supports, abut.Support("bar.right", x=0.02)]
     solution = abut.solve(abut.Model(model.mesh, model.solids, held, solve=model.solve))
     assert solution.converged
+    assert not any(check.name == "limit load" for check in solution.certificate)
     assert solution.steps[-1].stress[:, 0] == pytest.approx(YIELD, rel=1e-9)

@@ -192,3 +192,27 @@ def test_both_differences_count() -> None:
     partly = share.copy()
     partly[middle] = 0.5
     assert pressure_error(own, even, partly, 2.0, off) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_beside_a_pressure_without_limit() -> None:
+    """At an edge of the contactor, where it is cut off, a steep pressure is none that alternates, and the stress of cells
+    there is not compared with it; one node further it is."""
+    model = squares(8, 8, "quad8")
+    own = pair(model, model.contacts[0], supports(model))
+    nodes = own.contactor.node_ids
+    x, share = own.contactor.points[:, 0], np.ones(len(own.contactor.points))
+    distance = np.minimum(x, 1.0 - x) * 8.0  # facets from the nearer edge
+    end, beside, next_one = (np.isin(np.arange(len(x)), nodes) & (np.abs(distance - k) < 1e-9) for k in (0, 1, 2))
+    even = np.where(np.isin(np.arange(len(x)), nodes), 1.0, 0.0)
+    sharp = np.where(end, 10.0, even)
+    assert pressure_error(own, sharp, share, 10.0, None, 1.0) == pytest.approx(0.0, abs=1e-12)
+    for off, expected in ((beside, 0.0), (next_one, STRESS * 0.2 / 10.0)):
+        found = pressure_error(own, sharp, share, 10.0, np.where(off, 1.2, even), 1.0)
+        assert found == pytest.approx(expected, abs=1e-12)
+    steep = np.where(
+        end, 10.0, np.where(beside, 2.0, even)
+    )  # second differences over 2 of -.5 beside the edge, then .5
+    expected = (AVERAGED * 0.5 + CHANGE * 0.5 * 1.0) / 10.0
+    assert pressure_error(own, steep, share, 10.0, None, 2.0) == pytest.approx(expected)
+    taken_off = np.where(beside, 2.1, steep)  # by a neighbour's curvature, which does not stand for what is left
+    assert pressure_error(own, steep, share, 10.0, None, 2.0, taken_off) == pytest.approx(expected)

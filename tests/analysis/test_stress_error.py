@@ -16,6 +16,7 @@ from abut.diagnosis.cures import cure
 from abut.diagnosis.earlier import sizes_wanted
 from abut.mesh.make import join, rectangle
 from abut.output.results import summary
+from models.certificate import fit, fit_pressure, plate
 from models.patch import model, two_blocks
 from models.stresses import hertz_line
 
@@ -90,3 +91,39 @@ def test_without_an_earlier_run_nothing_is_said(tmp_path: Path) -> None:
     for text in ("", "[]", "{}", '{"steps": [{"stress_error": {}}]}'):
         (tmp_path / "summary.json").write_text(text)
         assert sizes_wanted(tmp_path) == []
+
+
+@pytest.mark.parametrize(("cell", "around"), [("quad4", (8, 12)), ("quad4", (16, 24)), ("tri3", (16, 24))])
+def test_the_mean_pressure_of_a_fit(cell: str, around: tuple[int, int]) -> None:
+    """The strain energy of bodies that are moved, not loaded, is the least of all that they can take, and of cells too high
+    by the square of the error in the energy norm (Galerkin); it is half of what the interference does on the pressure. The
+    exact one is that of smooth rings, so that facets have a part in it."""
+    solution = abut.solve(fit(around, cell))
+    error = solution.steps[-1].stress_error
+    assert error is not None
+    pressure = solution.contacts[0].pressure
+    off = float(np.nanmean(pressure)) / fit_pressure() - 1.0
+    assert off == pytest.approx(error.stiffer, rel=0.5)
+    (line,) = (check for check in solution.certificate if check.name == "stress error")
+    assert f"up to about {error.stiffer:.1%} too much pressure in the mean" in line.meaning
+
+
+def test_a_load_sets_the_mean() -> None:
+    (line,) = (check for check in abut.solve(hertz_line("quad4", 3)).certificate if check.name == "stress error")
+    assert "in the mean" not in line.meaning
+
+
+@pytest.mark.parametrize(("cell", "n"), [("quad4", 4), ("quad4", 8), ("tri3", 4), ("tri3", 8)])
+def test_the_force_of_a_block_pressed_down(cell: str, n: int) -> None:
+    """The force does half of its way as strain energy: too high by the same share, of that on a mesh of second order that is
+    four or eight times as fine. At the block's corners stresses have no bound and are recovered worse: within a third."""
+    (fine, _), (coarse, said) = pressed_down("quad8", 32), pressed_down(cell, n)
+    assert coarse / fine - 1.0 == pytest.approx(said, rel=1.0 / 3.0)
+
+
+def pressed_down(cell: str, n: int) -> tuple[float, float]:
+    """Force, and what is said of its error."""
+    solution = abut.solve(plate(cell, n, n))
+    error = solution.steps[-1].stress_error
+    assert error is not None
+    return abs(float(solution.contacts[0].force[1])), error.stiffer

@@ -11,10 +11,12 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[2] / "bench" / "decks"))
 
 import cards as deck_cards
+import count
 import frd
 import refine
 
 import reference
+from models.decks import BRICKS, HELD, PAIR, PUSH, write
 
 DECK = """** a comment
 *NODE, NSET=ALL
@@ -157,3 +159,21 @@ def test_adjusted_nodes_lie_on_the_master_surface() -> None:
     heights = {round(float(line.split(",")[3]), 9) for line in card.data}
     assert heights == {0.0, 0.5, 1.0, 1.51, 2.01}
     assert "ADJUST" not in pair.options
+
+
+@pytest.mark.parametrize(
+    ("more", "why"),
+    [
+        ("", ""),
+        ("*DYNAMIC", "dynamics"),
+        ("*HEAT TRANSFER", "heat transfer"),
+        ("*FLUID CONSTANTS", "flow of fluids"),
+        ("*GAP", "gap elements"),
+        ("*CHANGE SOLID SECTION", "elements, materials and contact laws that change"),
+    ],
+)
+def test_reasons_of_refused_decks(more: str, why: str, tmp_path: Path) -> None:
+    text = BRICKS + PAIR + HELD + PUSH.replace("*STATIC", f"*STATIC\n{more}" if more else "*STATIC")
+    found = count.read(write(tmp_path, text))
+    assert found.startswith(why)
+    assert bool(found) == bool(why)

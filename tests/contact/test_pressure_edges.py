@@ -23,6 +23,7 @@ from models.pressure import (
     at_corners,
     bent,
     bent_pressure,
+    flat_punch,
     iterations,
     line,
     opened,
@@ -116,6 +117,19 @@ def test_square_punch_whose_edge_ends_within_facets(part: float, limit: float) -
     assert np.nanmax(contact.pressure) <= limit
     assert contact.max_pressure <= 6.0
     assert contact.force[2] == pytest.approx(-1.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("cell", ["quad8", "quad9", "tri6"])
+def test_next_to_a_sharp_edge(cell: str) -> None:
+    """A flat punch, 1 / (pi (1 - x^2)^1/2), the contactor, whose pressure has no bound at its edge: what its last node shows
+    is no part of a quadratic's averages, and the node before it is within what its own average is off there, a tenth (of
+    d^-1/2 at the distance h over its function (8 2^1/2 - 8) / 3)."""
+    solution = abut.solve(flat_punch(cell, 8))
+    x, p = at_corners(solution.contacts[0])
+    off = p * np.pi * np.sqrt(np.maximum(1.0 - x[:, 0] ** 2, 0.0)) - 1.0
+    beside = np.abs(np.abs(x[:, 0]) - 0.875) < 1e-9
+    assert beside.sum() == 2
+    assert np.abs(off[beside]).max() < (8.0 * np.sqrt(2.0) - 8.0) / 3.0 - 1.0
 
 
 @pytest.mark.parametrize(("cells", "young"), [((16, 4), 1e4), ((12, 6), 1e4), ((16, 4), 1e6)])

@@ -86,6 +86,10 @@ def test_offset_and_gravity(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
+        (
+            beam("B32").replace("*BEAM SECTION", "*BEAM GENERAL SECTION"),
+            r"\*BEAM GENERAL SECTION: pipes, boxes and sections by their moments are not supported; give \*BEAM SECTION",
+        ),
         (beam("B32", section="CIRC\n.1\n0.,1.,0.\n"), "SECTION=CIRC: only rectangles"),
         (beam("B32", section="RECT\n.1, 0.\n0.,1.,0.\n"), "width: expected a number > 0, got 0"),
         (beam("B32", section="RECT\n.1, .1\n1.,0.,0.\n"), "beam 1 has no length, or lies along the first direction"),

@@ -244,8 +244,7 @@ def test_rigid_body(tmp_path):
     ]
     place = pushed.contacts[0].resultant.moment / -5.0  # the middle of the pressure balances the moments
     assert place[:2] == pytest.approx([-0.5 + 0.04, 0.5 - 0.06], rel=1e-6)
-    with pytest.raises(InputError, match="rigid in part only"):
-        load(tmp_path, text.replace("BODY, ELSET=HIGH", "BODY, NSET=TOP") + step())
+    assert load(tmp_path, text.replace("BODY, ELSET=HIGH", "BODY, NSET=TOP") + step()).model.rigid == ()  # a coupling
 
 
 def test_pretension(tmp_path):
@@ -258,9 +257,12 @@ def test_pretension(tmp_path):
     cut = points[:, 2] == 1.0
     assert cut.sum() == 8
     assert sorted(u[cut, 2]) == pytest.approx([-0.01] * 4 + [0.01] * 4, rel=1e-9)
-    for normal in ("0., 0., 1.\n", "0., 0., -2.\n"):  # a direction only: tension is tension
-        given = text.replace("NODE=99\n", f"NODE=99\n{normal}")
-        assert np.allclose(solve(tmp_path, given + step("*CLOAD", "99, 1, 10.")).displacement, u, atol=1e-12)
+    for normal, sign in (("0., 0., 1.\n", 1.0), ("0., 0., -2.\n", -1.0)):  # as CalculiX's example pret1 has it
+        given = text.replace("NODE=99\n", f"NODE=99\n{normal}") + step("*CLOAD", "99, 1, 10.")
+        assert np.allclose(solve(tmp_path, given).displacement, sign * u, atol=1e-12)
+        assert any("the normal points into the elements of 'MASTER'" in n for n in load(tmp_path, given).notes) == (
+            sign < 0
+        )
     closed = solve(tmp_path, text + step("*BOUNDARY", "99, 1, 1, 0.02"))
     assert np.allclose(np.abs(closed.displacement[cut, 2]), 0.01, rtol=1e-9)
     with pytest.raises(InputError, match="no neighbour beyond the cut"):
@@ -305,6 +307,29 @@ def test_cylindrical_axes(start, tmp_path):
     assert bool(solution.model.equations) == (start != 0.0)
     expected = 1.3 * 1e-3 * 10.0 * solution.model.mesh.points * [1.0, 1.0, 0.0]
     assert np.allclose(solution.displacement, expected, rtol=0.0, atol=1e-10)
+
+
+@pytest.mark.parametrize(
+    "transform", ["TYPE=C\n0,0,0, 0,0,1.", "TYPE=R\n1,2,.5, -2,1,0."], ids=["cylindrical", "rectangular"]
+)
+def test_forces_along_axes_of_their_own(transform, tmp_path):
+    """The same displacements as under these forces written along x, y and z, node by node."""
+    text = sector(6, 0.3) + RUBBER + "*BOUNDARY\nNSIDE, 1, 3\n"
+    local = np.array([0.5, 1.0, -0.2])
+    nodes = load(tmp_path, text + step("*CLOAD", "NNEXT, 1, 1.")).model.mesh.points
+    members = [int(line.rstrip(",")) for line in text.partition("*NSET, NSET=NNEXT\n")[2].partition("*")[0].split()]
+    lines = []
+    for number in members:
+        x = nodes[number - 1]
+        first = np.array([x[0], x[1], 0.0]) if transform.startswith("TYPE=C") else np.array([1.0, 2.0, 0.5])
+        third = np.array([0.0, 0.0, 1.0]) if transform.startswith("TYPE=C") else np.cross(first, [-2.0, 1.0, 0.0])
+        axes = [first / np.linalg.norm(first), np.zeros(3), third / np.linalg.norm(third)]
+        axes[1] = np.cross(axes[2], axes[0])
+        lines += [f"{number}, {k}, {value!r}" for k, value in enumerate((local @ np.array(axes)).tolist(), start=1)]
+    written = solve(tmp_path, text + step("*CLOAD", *lines)).displacement
+    turned = text + f"*TRANSFORM, NSET=NNEXT, {transform}\n"
+    own = solve(tmp_path, turned + step("*CLOAD", *(f"NNEXT, {k}, {v}" for k, v in enumerate(local.tolist(), start=1))))
+    assert own.displacement == pytest.approx(written, rel=1e-9, abs=1e-12)
 
 
 @pytest.mark.parametrize("sides", ["NEXT, SIDE", "SIDE, NEXT"])

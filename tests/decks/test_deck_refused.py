@@ -8,7 +8,8 @@ import pytest
 from abut.cli import main
 from abut.errors import InputError
 from abut.io.deck.cards import key
-from abut.io.deck.supported import NEEDED, PROCEDURES, QUIET, READ, REFUSED
+from abut.io.deck.refused import PARAMETERS, PROCEDURES, REFUSED
+from abut.io.deck.supported import NEEDED, QUIET, READ
 from abut.job import load_job
 from abut.mesh.mesh import Mesh
 from models.decks import BRICKS, HELD, PAIR, PUSH, load, step, write
@@ -42,6 +43,15 @@ def test_other_procedures_are_refused_and_left_out_with_their_step(name, tmp_pat
     with pytest.raises(InputError) as caught:
         load(tmp_path, BRICKS + step(card=f"*{name}"))
     assert "--ignore" not in str(caught.value)  # nothing would be left
+
+
+def test_every_reason_comes_with_a_cure():
+    """After a semicolon, as what to do: a verb, not another "not"."""
+    for name, reason in {**REFUSED, **PARAMETERS}.items():
+        why, _, cure = reason.partition("; ")
+        assert why, name
+        assert len(cure.split()) > 1, name
+        assert not {"not supported", "not read"} & {cure[-len("not supported") :], cure[-len("not read") :]}, name
 
 
 def test_large_displacements_are_solved_or_left_out(tmp_path):
@@ -187,7 +197,9 @@ def test_penalty_is_replaced_with_a_note(tmp_path):
         ("2, P2, 10.", "2, NEWTON, 10.", "load 'NEWTON' is not supported"),
         ("2, P2, 10.", "3, P2, 10.", "element 3 does not exist"),
         ("2, P2, 10.", "2, P2", "magnitude is missing"),
-        ("BOTTOM, 1, 3", "BOTTOM, 1, 11", "belongs to heat transfer"),
+        ("BOTTOM, 1, 3", "BOTTOM, 1, 11", r"direction 11 .* belongs to heat transfer.*; give temperatures by \*TEMPERATURE"),
+        ("BOTTOM, 1, 3", "BOTTOM, 0", r"direction 0 .* belongs to heat transfer.*; give temperatures by \*TEMPERATURE"),
+        ("2, P2, 10.", "2, P2NP, 18", "P2NP takes the pressure from a node of a network, .*; give it as a number, with P2"),
         ("BOTTOM, 1, 3", "BOTTOM, 3, 1", "directions 3 to 1"),
         ("*DLOAD\n2, P2, 10.", "*CLOAD\n18, 7, 1.", r"direction 7: expected 1 to 3 \(forces\) or 4 to 6 \(moments\)"),
         ("*DLOAD\n2, P2, 10.", "*CLOAD\n18, 4, 1.", "node 18 carries no moment"),

@@ -246,3 +246,17 @@ def test_as_calculix(code: str, tmp_path: Path) -> None:
         value, local = wanted[int(number)]  # "L": along the radius, the circumference and the axis
         axes = np.stack([up, np.cross(width, up), width]) if local else np.eye(3)
         assert axes @ u[sides].mean(axis=0) == pytest.approx(value, abs=0.003 * largest)
+
+
+def test_on_the_edge_of_a_brick(tmp_path: Path) -> None:
+    """A shell that shares nodes with the straight edge of a linear solid follows it all along: pulled, it lengthens by
+    p L / E; by its ends alone it would be held half as well."""
+    nodes = "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,1,1,1\n8,0,1,1\n9,0,0,2\n10,0,1,2\n"
+    text = nodes + "*ELEMENT, TYPE=C3D8, ELSET=BRICK\n1,1,2,3,4,5,6,7,8\n*ELEMENT, TYPE=S4, ELSET=SHEET\n2,5,8,10,9\n"
+    text += "*NSET, NSET=ALL, GENERATE\n1,8\n*NSET, NSET=TOP\n9,10\n*MATERIAL, NAME=M\n*ELASTIC\n1000.,0.\n"
+    text += "*SOLID SECTION, ELSET=BRICK, MATERIAL=M\n*SHELL SECTION, ELSET=SHEET, MATERIAL=M\n.2\n"
+    text += "*BOUNDARY\nALL,1,3\nTOP,1,2\nTOP,3,3,.01\n"
+    solution = solve(tmp_path, text + step())
+    points = solution.model.mesh.points
+    middle = (np.abs(points[:, 2] - 1.0) < 1e-9) & (np.abs(points[:, 1] - 0.5) < 1e-9)
+    assert solution.displacement[middle].mean(axis=0) == pytest.approx([0.0, 0.0, 0.0], abs=1e-9)

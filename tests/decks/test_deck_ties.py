@@ -7,6 +7,8 @@ from pathlib import Path
 import pytest
 
 import abut
+from abut.cli import main
+from abut.job import load_job
 from models.decks import load, step
 
 E = 1000.0
@@ -168,3 +170,80 @@ def test_edges_of_plane_elements(tmp_path: Path) -> None:
         abut.InputError, match=r"no face of 'SLAVE' is within 0.1 of 'MASTER', the nearest is 0.11 away"
     ):
         load(tmp_path, text.format(y=1.11))
+
+
+INSIDE = """*NODE, NSET=ALL
+1, 0,0,0
+2, 1,0,0
+3, 1,1,0
+4, 0,1,0
+5, 0,0,1
+6, 1,0,1
+7, 1,1,1
+8, 0,1,1
+11, 0,0,0
+12, .4,0,0
+13, .4,1,0
+14, 0,1,0
+15, 0,0,1
+16, .4,0,1
+17, .4,1,1
+18, 0,1,1
+22, 1,0,0
+23, 1,1,0
+26, 1,0,1
+27, 1,1,1
+*ELEMENT, TYPE=C3D8, ELSET=LOW
+1, 1,2,3,4,5,6,7,8
+*ELEMENT, TYPE=C3D8, ELSET=HIGH
+2, 11,12,13,14,15,16,17,18
+3, 12,22,23,13,16,26,27,17
+*SURFACE, NAME=MASTER
+1, S2
+*SURFACE, NAME=SLAVE
+HIGH, S2
+*SURFACE, NAME=PUSHED
+HIGH, S1
+*MATERIAL, NAME=EL
+*ELASTIC
+1000., 0.
+*SOLID SECTION, ELSET=LOW, MATERIAL=EL
+*SOLID SECTION, ELSET=HIGH, MATERIAL=EL
+*TIE, NAME=T
+SLAVE, MASTER
+*BOUNDARY
+1, 1, 3
+2, 1, 3
+3, 1, 3
+4, 1, 3
+11, 1, 2
+12, 1, 2
+13, 1, 2
+14, 1, 2
+22, 1, 2
+23, 1, 2
+"""
+
+
+def test_surfaces_that_look_the_same_way(tmp_path: Path) -> None:
+    """Two bars in one place, joined at their tops only: a pressure p on the foot of the one presses it and draws the other,
+    each by p L / E."""
+    job = load(tmp_path, INSIDE + step("*DSLOAD", "PUSHED, P, 10."))
+    assert any("look the same way" in note and "6 slave nodes are tied one by one" in note for note in job.notes)
+    assert not job.model.contacts
+    solution = abut.solve(job.model)
+    z, u = job.model.mesh.points[:, 2], solution.displacement[:, 2]
+    assert u[z == 1.0] == pytest.approx(10.0 / E, rel=1e-9)
+    assert u[8:][z[8:] == 0.0] == pytest.approx(20.0 / E, rel=1e-9)
+    assert main(["convert", str(tmp_path / "deck.inp"), str(tmp_path / "job.toml"), "--quiet"]) == 0
+    again = abut.solve(load_job(tmp_path / "job.toml").model)
+    assert again.displacement == pytest.approx(solution.displacement, abs=1e-12)
+
+
+def test_a_master_beside_its_slave_is_refused(tmp_path: Path) -> None:
+    text = INSIDE
+    for number, x, y in ((1, 0, 0), (2, 1, 0), (3, 1, 1), (4, 0, 1)):
+        for n, z in ((number, 0), (number + 4, 1)):
+            text = text.replace(f"\n{n}, {x},{y},{z}\n", f"\n{n}, {x + 9},{y},{z}\n")
+    with pytest.raises(abut.InputError, match=r"\*TIE: no (node|face) of 'SLAVE'"):
+        load(tmp_path, text + step("*DSLOAD", "PUSHED, P, 10."))

@@ -18,7 +18,17 @@ from abut.report.origin import quantities as known_quantities
 FOLDER = Path(__file__).parents[2] / "examples"
 FILES = sorted([*FOLDER.rglob("*.toml"), *FOLDER.rglob("*.inp")])
 JOBS = [path for path in FILES if path.parent.name != "faulty"]  # those: test_check.py
-LONG = {"pin-lug", "hertz-sphere", "snap-joint", "crushed-ring", "twisted-hub", "o-ring", "accordion", "bolted-joint"}
+LONG = {
+    "pin-lug",
+    "hertz-sphere",
+    "snap-joint",
+    "crushed-ring",
+    "twisted-hub",
+    "o-ring",
+    "accordion",
+    "bolted-joint",
+    "dented-plate",
+}
 
 
 @pytest.mark.parametrize(

@@ -14,6 +14,7 @@ from abut.cli import main
 from abut.expression import with_names
 from abut.job import load_job
 from abut.job.parameters import read_settings
+from abut.mesh.mesh import Mesh
 
 JOB = """schema = 1
 parameters = { n = 2, height = 1.5, pressed = "height/150", E = 2e5 }
@@ -101,6 +102,43 @@ def test_settings_that_are_refused(
     path = write(tmp_path)
     assert main(["run", str(path), *(part for text in settings for part in ("--set", text))]) == 2
     assert message in capsys.readouterr().err
+
+
+def test_converted_with_parameters(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A job of numbers alone, and its mesh, as the settings make it; and the mesh alone."""
+    path = write(tmp_path)
+    assert main(["convert", str(path), str(tmp_path / "tall.toml"), "--set", "height=3", "--set", "n=1"]) == 0
+    model = load_job(tmp_path / "tall.toml").model
+    assert model.mesh.points[:, 1].max() == 3.0
+    assert model.mesh.n_cells == 2
+    assert model.supports[2].y(np.array([[1.0, 3.0]])) == pytest.approx(-0.02)
+    assert main(["convert", str(path), str(tmp_path / "mesh.vtu"), "--set", "height=2"]) == 0
+    assert Mesh.read(tmp_path / "mesh.vtu").points[:, 1].max() == 2.0
+    assert main(["convert", str(path), str(path)]) == 2
+    assert "is the job that is read" in capsys.readouterr().err
+    assert main(["convert", str(tmp_path / "mesh.vtu"), str(tmp_path / "b.vtu"), "--set", "height=2"]) == 2
+    assert "--set is for job files" in capsys.readouterr().err
+
+
+def test_tests_of_a_job_with_parameters(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """``infsup`` and ``verify`` look at the job that the settings make."""
+    block = '[[contacts]]\nsurfaces = ["block.top", "lid.bottom"]\n[mesh.bodies.lid]\nkind = "rectangle"\n'
+    block += 'x = [0, "=2*height"]\n'
+    block += 'y = ["=height", "=2*height"]\ncells = ["=n", 2]\n'
+    text = JOB.replace("[mesh.bodies.block]", block + "[mesh.bodies.block]")
+    text = text.replace("solids = [", 'solids = [{ body = "lid", material = "steel" }, ').replace(
+        'block.top", y', 'lid.top", y'
+    )
+    path = write(tmp_path, text)
+    found = []
+    for n in ("2", "5"):
+        assert main(["infsup", str(path), "--json", "--set", f"n={n}"]) == 0
+        found.append(json.loads(capsys.readouterr().out))
+    assert found[0] != found[1]
+    assert main(["verify", str(path), "--set", "n=3"]) == 0
+    assert main(["verify", str(path), "--set", "m=3"]) == 2
+    assert "no parameter named 'm'" in capsys.readouterr().err
+    assert main(["verify", "--set", "n=3", "holds"]) == 2
 
 
 def test_decks_have_none(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -214,6 +214,19 @@ def square_punch(part: float, cell: str = "hex8", whole: int = 3, **contact: obj
     )
 
 
+def flat_punch(cell: str, n: int) -> abut.Model:
+    """A sharp, nearly rigid punch of width 2 under a unit force on a wide block, plane strain, n facets on half of both."""
+    block = rectangle((-20, 20), (-20, 0), (2 * n, n), cell, fine={"x": [-1, 1], "y": [-1, 0]})
+    return abut.Model(
+        join({"punch": rectangle((-1, 1), (0, 1), (2 * n, n), cell), "block": block}),
+        [abut.Solid("punch", abut.LinearElastic(1e7, 0.3)), abut.Solid("block", abut.LinearElastic(1e3, 0.3))],
+        [abut.Support("block.bottom", x=0, y=0), abut.Support("punch.top", x=0)],
+        [abut.Force("punch.top", (0.0, -1.0))],
+        [abut.Contact(contactor="punch.bottom", target="block.top")],
+        plane="strain",
+    )
+
+
 def bent(cell: str, n: int, kind: str = "contact", **contact: object) -> abut.Model:
     """A column of two blocks under end loads that bend and press it: the pressure between them is that of ``bent_pressure``,
     the displacement of second order."""

@@ -92,6 +92,20 @@ def test_law_against_differences() -> None:
         assert np.abs(by_traction / (2 * step) - at.by_traction[:, :, component])[beyond].max() < 1e-8
 
 
+def test_a_closed_point_that_is_still_open_ends_with_its_friction() -> None:
+    """The linear problem of a point that is to close and to slip: its gap is open, far more than its pressure presses. Where
+    the gap then vanishes the traction is mu times the pressure, whatever that is: the law is linear there but for the
+    direction, which does not turn in 2D."""
+    law, pressure = Coulomb(stiffness=3.0, friction=0.4), 0.7
+    jump, traction = np.array([[0.5, 0.2]]), np.zeros((1, 2))
+    at = law.evaluate(jump, traction, LawState(np.ones(1, bool), slipping=np.ones(1, bool)))
+    closing = np.array([-jump[0, 0], 0.0])
+    left = at.residual[0] + at.by_jump[0] @ closing
+    found = np.linalg.solve(at.by_traction[0][1:, 1:], -(left[1:] + at.by_traction[0][1:, 0] * pressure))
+    assert left[0] == pytest.approx(0.0, abs=1e-15)
+    assert found[0] == pytest.approx(-0.4 * pressure, rel=1e-12)
+
+
 def test_cattaneo_and_mindlin() -> None:
     """A cylinder pressed on a block of its own material, then pushed: sticks in the middle, slips beside it. The formulas
     are those of half spaces; the blocks are nine contact widths wide, which costs about one per cent."""

@@ -59,7 +59,7 @@ def test_guess() -> None:
 
 
 def test_without_what_pulls() -> None:
-    """Only where contact alone holds a body, and never all of a contact."""
+    """Only where contact alone holds a body, and never all of a contact: there what sticks slips."""
     problem = finite(pin_in_cradle(0.2))
     start = problem.start()
     system = problem.again(start, start)
@@ -70,12 +70,18 @@ def test_without_what_pulls() -> None:
     def left(pressures: list[float]) -> State | None:
         multipliers = np.zeros(len(start.status))
         multipliers[at] = pressures
-        return without_pulling(system, start, replace(start, multipliers=multipliers), FIRST)
+        return without_pulling(system, begun, replace(begun, multipliers=multipliers), FIRST)
 
+    begun = start
     some = left([-1.0, 3.0, -1.0])
     assert some is not None
     assert np.flatnonzero(some.closed[pair.normal]).tolist() == [at[1]]
     assert left([1.0, 3.0, 1.0]) is None
+    slides = left([-1.0, -3.0, -1.0])
+    assert slides is not None
+    assert np.array_equal(slides.closed, start.closed)
+    assert np.array_equal(slides.slipping, start.closed)
+    begun = slides
     assert left([-1.0, -3.0, -1.0]) is None
     held, there = touching(0.0)
     assert without_pulling(held, there, replace(there, multipliers=np.where(there.closed, -1.0, 0.0)), FIRST) is None

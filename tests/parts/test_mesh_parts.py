@@ -23,7 +23,8 @@ from abut.mesh.shapes import ratios
 from abut.parts.geometry import body_names, cleaned
 from abut.parts.program import find_gmsh, run_script
 from abut.parts.scripts import Sizes
-from abut.parts.step_names import solid_names
+from abut.parts.step_names import decoded, solid_names
+from models.step_text import Box, assembly
 
 try:
     GMSH = find_gmsh()
@@ -243,6 +244,34 @@ def test_names_in_step_files(tmp_path: Path) -> None:
     )
     assert solid_names(path) == [("bush", 3), ("hollow; ball", 3)]
     assert solid_names(tmp_path / "a.brep") == []
+
+
+@needs_gmsh
+def test_a_file_of_another_program(tmp_path: Path) -> None:
+    """An assembly in AP214 with products placed in it, coloured, solids named after features: bodies have the products'
+    names, lie where the assembly puts them, and touch."""
+    path = tmp_path / "assembly.step"
+    boxes = (
+        Box("Base plate", "Boss-Extrude1", (30.0, 20.0, 4.0), (0.0, 0.0, 0.0)),
+        Box("Geh\\X2\\00E4\\X0\\use No 2", "Boss-Extrude1", (10.0, 8.0, 6.0), (5.0, 6.0, 4.0)),
+    )
+    path.write_text(assembly(boxes), encoding="ascii")
+    assert solid_names(path) == [("Base plate", 6), ("Gehäuse No 2", 6)]
+    assert main(["mesh", str(path), "--size", "4", "--quiet"]) == 0
+    mesh = Mesh.read(tmp_path / "assembly.msh")
+    names = [cleaned(name) for name in ("Base plate", "Gehäuse No 2")]
+    assert list(mesh.bodies) == names
+    for name, box in zip(names, boxes):
+        assert _volume(mesh, name) == pytest.approx(math.prod(box.size), rel=1e-9)
+    where = mesh.points[mesh.nodes_of(names[1])]
+    assert where.min(axis=0) == pytest.approx([5.0, 6.0, 4.0], abs=1e-6)
+    assert f"{names[0]}.to-{names[1]}" in mesh.surfaces
+
+
+def test_characters_in_step_files() -> None:
+    """ISO 10303-21: four digits for each character between X2 and X0, two after X; quotes and backslashes twice."""
+    assert decoded("Geh\\X2\\00E400DF\\X0\\use") == "Gehäßuse"
+    assert decoded("a\\X\\E4b''c\\\\d") == "aäb'c\\d"
 
 
 def test_sizes_at_contact() -> None:

@@ -81,3 +81,27 @@ def test_loads_that_settle(at: str, held: int) -> None:
     report = check(model)
     assert report.status == 0
     assert sum(HELD in finding.line for finding in report.findings) == held
+
+
+@pytest.mark.long
+def test_a_disc_finds_the_bottom_of_a_bowl_by_its_weight() -> None:
+    """It is laid in askew, far more than its weight presses in: it slides to the bottom, led by a drag. There it lies on a
+    point or two, which resist hardly any rigid motion, and its weight alone brings it back, as that of a pendulum: what
+    remains of the load needs no drag. The bowl is symmetric, so the bottom is its middle, to a hundredth of a facet."""
+    parts = {
+        "bowl": make.ring((1.6, 2.4), (-135, -45), cells=(3, 12)),
+        "disc": make.disc(1.0, centre=(0.1, -0.6), cells=4),
+    }
+    model = abut.Model(
+        make.join(parts), [abut.Solid(body, abut.NeoHooke(100.0, 0.3)) for body in parts],
+        [abut.Support("bowl.outer", x=0, y=0)], [abut.BodyForce((0.0, -1.0), "disc")],
+        [abut.Contact("disc.round", "bowl.inner")], plane="strain", kinematics="finite",
+    )  # fmt: skip
+    solution = abut.solve(model)
+    assert solution.converged
+    nodes = model.mesh.nodes_of("disc")
+    lies = (model.mesh.points + solution.displacement.reshape(-1, 2))[nodes]
+    assert abs(lies[:, 0].mean()) < 0.01 * 1.6 * np.pi / 24
+    force = solution.contacts[0].resultant.force
+    assert abs(force[0]) < 1e-6 * force[1]
+    assert sum("led to time" in note for note in solution.notes) <= 1

@@ -6,6 +6,7 @@ import inspect
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -17,10 +18,10 @@ from abut.mesh import make
 BARE = (AttributeError, KeyError, IndexError, TypeError, ValueError)
 NOTHING = (None, 3, "", 3.5, [], {})  # what a user may have in a variable that should hold something else
 ERRORS = {name for name in abut.__all__ if isinstance(getattr(abut, name), type) and "Error" in name}
-RESULTS = {"FoundContact", "Solution"}  # abut makes these
+RESULTS = {"FoundContact", "MidSurface", "Solution", "Thick"}  # abut makes these
 LISTS = (
     "solids", "supports", "loads", "contacts", "equations", "rigid", "probes", "rotations", "couplings", "preloads",
-    "springs", "holds",
+    "springs", "holds", "penetrations",
 )  # fmt: skip
 
 BLOCKS = {"a": make.rectangle([0, 2], [0, 1], cells=[2, 1]), "b": make.rectangle([0, 2], [1, 2], cells=[2, 1])}
@@ -31,7 +32,7 @@ MODEL = abut.Model(
     [abut.Solid("a", STEEL), abut.Solid("b", STEEL)],
     supports=[abut.Support("a.bottom", x=0, y=0), abut.Support("b.left", x=0)],
     loads=[abut.Pressure("b.top", 1.0)],
-    contacts=[abut.Contact("b.bottom", "a.top")],
+    contacts=[abut.Contact("b.bottom", "a.top", name="c")],
     plane="strain",
 )
 
@@ -49,6 +50,11 @@ VALID: dict[str, tuple[dict[str, Any], Callable[[Any], object]]] = {  # argument
     "Amplitude": ({"points": [(0, 0), (1, 1)]}, lambda a: within("loads")(abut.Pressure("b.right", 1.0, amplitude=a))),
     "Anisotropic": ({"constants": np.eye(6)[np.triu_indices(6)]}, kept),
     "ArrudaBoyce": ({"bulk": 100.0, "shear": 1.0, "locking": 3.0}, kept),
+    "Beam": ({"widths": (1.0, 2.0)}, kept),
+    "MidForce": ({"on": "a", "value": (1.0, 0.0, 0.0)}, kept),
+    "MidSupport": ({"on": "a", "x": 0.0}, kept),
+    "Shell": ({"thickness": 1.0}, kept),
+    "thicken": ({"path": "none.msh", "sections": {"a": abut.Shell(1.0)}}, kept),
     "Axes": ({"kind": "cylindrical"}, lambda axes: within("supports")(abut.Support("a.left", x=0, axes=axes))),
     "BodyForce": ({"value": (1.0, 0.0)}, within("loads")),
     "Centrifugal": ({"speed": 1.0}, within("loads")),
@@ -72,6 +78,7 @@ VALID: dict[str, tuple[dict[str, Any], Callable[[Any], object]]] = {  # argument
     "Output": ({}, kept),
     "OverTemperature": ({"temperatures": [0.0, 1.0], "materials": [STEEL, STEEL], "initial_temperature": 0.0}, kept),
     "Plastic": ({"young": 1.0, "poisson": 0.3, "yield_stress": 1.0}, kept),
+    "Penetration": ({"contact": "c", "source": "a.top", "value": 1.0}, within("penetrations")),
     "Preload": ({"name": "p", "surface": "b.left", "force": 1.0}, within("preloads")),
     "Pressure": ({"on": "b.right", "value": 1.0}, within("loads")),
     "PressureOverclosure": ({"points": [(0, 0), (1, 1)]}, kept),
@@ -91,8 +98,16 @@ VALID: dict[str, tuple[dict[str, Any], Callable[[Any], object]]] = {  # argument
     "add_surfaces": ({"mesh": MESH, "found": ()}, kept),
     "check": ({"model": MODEL}, kept),
     "find_contacts": ({"mesh": MESH}, kept),
+    "from_meshio": ({"mesh": SimpleNamespace(points=MESH.points, cells=[("quad", b.nodes) for b in MESH.blocks])}, kept),
 }  # fmt: skip
-OF_SOLUTIONS = {"plot", "solve", "to_pyvista", "write", "write_report"}  # whose other arguments take a solution
+OF_SOLUTIONS = {
+    "mid_surface",
+    "plot",
+    "solve",
+    "to_pyvista",
+    "write",
+    "write_report",
+}  # whose other arguments take a solution
 
 
 def sound(call: Callable[[], object], what: str) -> None:

@@ -85,6 +85,7 @@ def energy(
             closing += 0.5 * float(came @ (late + early))
     internal, step = mean("internal"), np.abs(now.free - before.free)
     rounding = np.finfo(float).eps * (balance.diagonal * np.abs(now.free)) @ step
+    rounding += np.finfo(float).eps * np.abs(internal) @ np.abs(now.displacement)  # where hardly anything has moved
     unbalanced = max(before.residual, now.residual) * step.sum()
     return Energy(
         loads=float(mean("loads") @ moved),

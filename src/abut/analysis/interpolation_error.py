@@ -17,7 +17,7 @@ from abut.contact.pressure_space import DUAL, DUAL_P1
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
 from abut.nonlinear.again import Imposed
-from abut.nonlinear.load_step import Attempt
+from abut.nonlinear.attempt import Attempt
 from abut.problem.assembly import Assembled
 from abut.problem.balance import Balance
 from abut.problem.body_terms import heated
@@ -46,7 +46,13 @@ class Mended:
 def is_mended(problem: ContactProblem) -> bool:
     """Whether there is anything: contact of bodies with such cells, linear materials, small displacements, no friction."""
     model, pairs = problem.model, problem.pairs
-    if problem.kinematics is not None or not problem.constant or model.physics or len(problem.springs):
+    if (
+        problem.kinematics is not None
+        or not problem.constant
+        or model.physics
+        or model.penetrations
+        or len(problem.springs)
+    ):
         return False
     if not pairs or any(pair.frictional for pair in pairs):
         return False

@@ -189,6 +189,9 @@ def _add_supports(model: Model, skin: _Skin) -> None:
     for places, every in (([s for p in model.preloads for s in p.sides], True), ([s.on for s in model.springs], False)):
         for on in places:  # what sections and springs exert is not known point by point
             skin.unknown[skin.touching(_marked(model, mesh.nodes_of(on)), every)] = True
+    for item in model.penetrations:  # nor where a fluid is
+        for side in model.sides(next(contact for contact in model.contacts if contact.name == item.contact)):
+            skin.unknown[skin.touching(_marked(model, side.node_ids), True)] = True
     normal = area_vectors(skin.surface)[:, 0]
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
     whole = np.stack([skin.touching(held[:, axis], True) for axis in range(dim)], axis=1)

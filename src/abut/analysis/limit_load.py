@@ -12,10 +12,10 @@ from abut.materials.material import history_fields
 from abut.materials.plastic import EQUIVALENT
 from abut.model import Model
 from abut.model.conditions import weights
-from abut.nonlinear.load_step import Attempt
+from abut.nonlinear.attempt import Attempt
 from abut.problem.assembly import Assembled
 from abut.solution import Step
-from abut.solution.flow import Flow
+from abut.solution.flow import Flow, LimitLoad
 
 SUM = 1e-9  # of forces over the sum of their sizes that is none
 
@@ -25,7 +25,7 @@ def yields(model: Model) -> bool:
     return any(EQUIVALENT in history_fields(solid.material) for solid in model.solids)
 
 
-def limit_load(assembled: Assembled, steps: Sequence[Step], failed: Attempt) -> str:
+def limit_load(assembled: Assembled, steps: Sequence[Step], failed: Attempt) -> LimitLoad | None:
     """What to say of an attempt that failed, the shortest one, after converged steps, theory (Y13): where metal flows more
     in it than in all of these. Nothing where it does not, or where nothing is loaded.
 
@@ -33,17 +33,17 @@ def limit_load(assembled: Assembled, steps: Sequence[Step], failed: Attempt) -> 
     model, time = assembled.problem.model, steps[-1].factor if steps else 0.0
     forces = np.asarray(assembled.loaded.forces @ weights(model.histories, time)).reshape(model.mesh.points.shape)
     if not yields(model) or not model.loads:
-        return ""
+        return None
     before, now = steps[-1].flow if steps else None, _flow(assembled, failed)
     if now is None or not now.largest > 2.0 * (0.0 if before is None else before.largest):
-        return ""
+        return None
     at, sums = (", ".join(f"{value:.5g}" for value in x) for x in (now.place, forces.sum(axis=0)))
     of_all = f" (sum of nodal forces ({sums}))" if np.abs(forces.sum(axis=0)).max() > SUM * np.abs(forces).sum() else ""
-    return (
+    where = (
         f"limit load near time {time:.5g}{of_all}: metal flows, most in '{now.body}' at ({at}), and no load step from there "
-        f"to {failed.time:.5g} or beyond finds an equilibrium; to go on prescribe displacements in place of loads, or give "
-        "the hardening that the metal has"
+        f"to {failed.time:.5g} or beyond finds an equilibrium"
     )
+    return LimitLoad(1.0 - time / model.ends[-1], where)
 
 
 def _flow(assembled: Assembled, attempt: Attempt) -> Flow | None:

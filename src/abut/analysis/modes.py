@@ -10,7 +10,7 @@ from abut.model import Buckling, Frequencies, Model
 from abut.modes.buckling import buckling
 from abut.modes.frequencies import frequencies
 from abut.modes.held import Held, held
-from abut.nonlinear.load_step import Attempt
+from abut.nonlinear.attempt import Attempt
 from abut.problem.assembly import Assembled
 from abut.solution import ModesResult
 from abut.solution.state import State

@@ -39,18 +39,19 @@ def pressure_error(
     axis, mirrored = _mirrored(pair, graph)
     edge = (graph.rim & ~axis & ~mirrored) | partly
     taken_off = np.abs(pressure - average)
+    unbounded = edge & (pressure > carried)
     pressure = np.where(edge, np.minimum(pressure, carried), pressure)
     within = inside & (~graph.rim | axis | mirrored)
+    beside = graph.any_of(unbounded)  # differences from a value cut off say nothing there, nor do stresses
     planes = _planes(pair, len(graph.rim))
     bent = np.where(within, _between(graph, surface.points, normals, pressure, *planes) - pressure, 0.0)
-    alternating = ALTERNATING * _alternating(graph, bent)
+    alternating = ALTERNATING * _alternating(graph, np.where(beside, 0.0, bent))
     averaged = AVERAGED * np.abs(bent) + np.maximum(alternating, CHANGE * _change(graph, bent, within))
-    parts = [np.where(taken_off > 0.0, taken_off + alternating, averaged)[within]]
+    parts = [np.where((taken_off > 0.0) & ~beside, taken_off + alternating, averaged)[within]]
     if stress is not None and np.nanmax(np.abs(stress[within]), initial=0.0) > TRIFLE * largest:
         known = within & ~np.isnan(stress)
-        away = known & graph.all_of(
-            inside | edge
-        )  # stresses next to the edge of contact are those of cells beyond it too
+        # Stresses next to the edge of contact are those of cells beyond it too.
+        away = known & graph.all_of(inside | edge) & ~beside
         parts.append(STRESS * np.abs(stress - pressure)[away if away.any() else known])
     off = np.concatenate(parts)
     return float(off.max()) / largest if len(off) else float("nan")

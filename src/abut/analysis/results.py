@@ -18,7 +18,9 @@ from abut.analysis.flow import flow, remembered
 from abut.analysis.interpolation_error import Mended
 from abut.analysis.known_stress import known_stress
 from abut.analysis.moved import largest_turn, slid
+from abut.analysis.node_fields import node_fields
 from abut.analysis.overlap import covered_elsewhere, overlaps
+from abut.analysis.penetrations import penetration_results
 from abut.analysis.preloads import preload_results
 from abut.analysis.stress_error import stress_error
 from abut.analysis.surface_stress import normal_stress
@@ -30,7 +32,7 @@ from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.model.conditions import weights
 from abut.model.offset import offsets
-from abut.nonlinear.load_step import Attempt
+from abut.nonlinear.attempt import Attempt
 from abut.nonlinear.settings import DEFAULT
 from abut.problem.assembly import Assembled
 from abut.problem.balance import Balance
@@ -40,6 +42,7 @@ from abut.problem.follower_loads import FollowerLoads
 from abut.problem.held_motions import HeldMotions, held_force
 from abut.problem.holds import Holds
 from abut.problem.pair import Pair
+from abut.problem.penetrations import Penetrations
 from abut.problem.preloads import LockedPreloads
 from abut.problem.problem import ContactProblem
 from abut.problem.rigid_bodies import RigidBody
@@ -101,11 +104,10 @@ def step_result(
     model, constraints, springs = problem.model, problem.constraints, problem.springs
     linked = np.zeros_like(end.reaction) if constraints.links is None else constraints.links.forces(end.reaction)
     by_supports = (end.reaction - linked).reshape(-1, model.dim)
-    own = assembled.bodies.stress(end.motion)
-    sampled, moved = (own, end.nodal) if shown is None else (shown.stress, shown.displacement)
+    own, moved = assembled.bodies.stress(end.motion), end.nodal if shown is None else shown.displacement
     points = model.mesh.points if model.small_strains else model.mesh.points + end.nodal
     points, solids = np.ascontiguousarray(points), model.deformable
-    contacts = _contacts(end, attempt, before, averages(solids, sampled), shown)
+    contacts = _contacts(end, attempt, before, averages(solids, shown.stress if shown else own), shown)
     change = heated(model, assembled.loaded, end.motion)
     known = known_stress(model, points, moved, state.time, change, list(zip(balance.pairs, contacts)))
     values = recovered(solids, points, own, known)
@@ -145,7 +147,8 @@ def step_result(
         turn=_turn(model, end.nodal),
         energy=work if strained else None,
         stress_error=stress_error(solids, end.nodal, own, values, contacts) if strained else None,
-        remembered={**remembered(solids, end.motion.history), **_at_nodes(model, end.motion)},
+        remembered={**remembered(solids, end.motion.history), **node_fields(problem, end.motion, state)},
+        penetrations=penetration_results(problem, state, end.displacement),
         flow=end.flow,
         preloads=_preloads(end, linked),
         springs=_springs(end),
@@ -177,7 +180,7 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
     internal = known[bodies.name] if bodies.name in known else bodies.evaluate(motion, motion).force
     following = np.zeros_like(displacement)
     for term in problem.terms:
-        if isinstance(term, FollowerLoads) or term.name in problem.own:
+        if isinstance(term, (FollowerLoads, Penetrations)) or term.name in problem.own:
             following -= balance.forces[term.name][: len(following)]
     locked = np.zeros_like(displacement)
     if LockedPreloads.name in balance.forces:
@@ -195,12 +198,6 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
         problem, balance, state, motion, displacement, pressures, internal, loads, reaction, following, locked, sprung,
         held, cycling, flow(problem.model.deformable, motion.history), supports,
     )  # fmt: skip
-
-
-def _at_nodes(model: Model, motion: Motion) -> dict[str, NDArray[np.float64]]:
-    """Fields beside displacements that stand at nodes, (n_points,) or (n_points, components)."""
-    at_nodes = [field.name for field in model.dofs.fields if field.at == "nodes"]
-    return {k: v[:, 0] if v.shape[1] == 1 else v for k, v in motion.fields.items() if k in at_nodes}
 
 
 def _energy(

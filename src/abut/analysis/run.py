@@ -24,13 +24,13 @@ from abut.model.conditions import weights
 from abut.model.offset import offsets
 from abut.model.side_choice import choices
 from abut.nonlinear.again import Again, prepared
+from abut.nonlinear.attempt import Attempt
 from abut.nonlinear.large_steps import LargeSteps
-from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.march import Control, Stepper, march
 from abut.nonlinear.pace import Pace, Slips, given_pace, pace_of
 from abut.nonlinear.settings import DEFAULT, Settings
 from abut.nonlinear.stabilised import strides
-from abut.nonlinear.stepping import SmallSteps
+from abut.nonlinear.stepping import ABSURD, SmallSteps
 from abut.probing import Place, find_places, read
 from abut.problem.assembly import Assembled, assemble, prescribed
 from abut.problem.clock import Clock
@@ -39,12 +39,11 @@ from abut.problem.restraint import require_balance
 from abut.problem.stabilising import is_dragged
 from abut.problem.step_error import landed_in
 from abut.solution import Iteration, ModesResult, Observer, OnStep, Phase, Saved, Solution, Step
+from abut.solution.flow import GO_ON
 from abut.solution.state import State
 
 if TYPE_CHECKING:
     from abut.parallel.team import Team
-
-ABSURD = 1e6  # displacement over model size that no units explain
 
 
 @dataclass
@@ -283,14 +282,15 @@ class Run:
             raise ConvergenceError(f"step {attempt.number} cannot be begun, however short: {attempt.reason}")
         try:
             limit = limit_load(self.assembled, self.steps, attempt)
-            self.steps.append(self._result(attempt, sized=not limit))
+            last = self._result(attempt, sized=limit is None)
+            self.steps.append(last if last.flow is None else replace(last, flow=replace(last.flow, limit=limit)))
         except Unsound as reason:
             raise ConvergenceError(f"step {attempt.number} did not converge; in its last state {reason}") from None
         self.clock.mark("results")
         count = len(attempt.iterations)
         self.told.note(f"step {attempt.number} did not converge in {count} iterations{_why(attempt)}")
-        if limit:
-            self.told.note(limit)
+        if limit is not None:
+            self.told.note(f"{limit.where}; {GO_ON}")
 
     def _taken(self) -> Step:
         """The step that the parts so far make; there are none left then."""

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from abut.errors import InputError
-from abut.nonlinear.load_step import Attempt
+from abut.nonlinear.attempt import Attempt
 from abut.problem.balance import Balance
 from abut.problem.problem import ContactProblem
 from abut.solution import Saved, SavedPart

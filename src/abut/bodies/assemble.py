@@ -73,8 +73,7 @@ def respond(
     moved = np.ascontiguousarray(displacement, dtype=float)
     after: dict[str, list[Array]] = {}
     for group in solids.groups():
-        unknown = group.kernel is None and solids.kinematics == "finite"
-        of_cells = np.full(len(group.cells), np.nan if unknown else 0.0)
+        of_cells = np.zeros(len(group.cells))
         wanted = Wanted(force, entries, energy=of_cells)
         new = integrate(solids, group, group.rule, moved, temperature, history, wanted)
         energy[group.cells] = of_cells

@@ -17,7 +17,7 @@ from abut.bodies.inverted import require_sound
 from abut.bodies.solids import Array, Group, Solids, TemperatureChange
 from abut.cells import CELLS
 from abut.errors import InputError
-from abut.materials.material import Evaluated, FiniteMaterial
+from abut.materials.material import Evaluated, FiniteMaterial, Material
 from abut.materials.places import Places, is_local, placed
 from abut.materials.plane_stress import Evaluate, law
 from abut.mesh.quadrature import Rule
@@ -27,10 +27,13 @@ History = Mapping[str, Array]  # by body, of materials that are not integrated t
 
 @dataclass(frozen=True)
 class Part:
-    """Some cells for the compiled core, and their thermal strains at the nodes, None without."""
+    """Some cells of a group, also as they are for the compiled core; thermal: their thermal strains at the nodes, None
+    without; material: where it is."""
 
+    group: Group
     cells: Cells
     thermal: Array | None
+    material: Material
 
 
 def evaluate(
@@ -61,7 +64,7 @@ def evaluate(
             strain = strains(cells, moved, thermal)
         rows = slice(part.first, part.first + len(strain))
         before = history[group.body][rows] if history else material.initial(len(strain))
-        yield Part(cells, thermal), *respond(strain, before)
+        yield Part(part, cells, thermal, here), *respond(strain, before)
 
 
 def places(solids: Solids, group: Group, rule: Rule, temperature: TemperatureChange) -> Places:

@@ -6,13 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from abut._core import shape_functions
 from abut.bodies.evaluation import History
 from abut.bodies.recovery import carried
 from abut.bodies.solids import Array, Group, Solids
-from abut.cells import CELLS
+from abut.bodies.volumes import point_volumes
 from abut.materials.material import history_fields
-from abut.mesh.integrals import gradients
 from abut.mesh.reference import reference_nodes
 
 
@@ -64,11 +62,5 @@ def integral(solids: Solids, history: History, name: str) -> float:
     """Of a scalar over the undeformed volume (per unit thickness in 2D, all round if axisymmetric)."""
     total = 0.0
     for group, values in at_cells(solids, history, name):
-        xi, weights = group.rule
-        shapes, derivatives = shape_functions(CELLS[group.kind].code, np.ascontiguousarray(xi))
-        _, det = gradients(solids.points, group.nodes, derivatives)
-        size = det * weights
-        if solids.mesh.axisymmetric:
-            size = size * 2.0 * np.pi * (solids.points[group.nodes, 0] @ shapes.T)
-        total += float((size * values[..., 0]).sum())
+        total += float((point_volumes(solids, group, group.rule) * values[..., 0]).sum())
     return total

@@ -7,11 +7,12 @@ from dataclasses import replace
 import numpy as np
 
 from abut._core import integrate_given, integrate_given_finite
-from abut.bodies.evaluation import History, evaluate
+from abut.bodies.evaluation import History, Part, evaluate
 from abut.bodies.inverted import require_sound
 from abut.bodies.solids import Array, Group, Solids, TemperatureChange
+from abut.bodies.volumes import point_volumes
 from abut.materials.kernel import At, Kernel, Wanted
-from abut.materials.material import compiled
+from abut.materials.material import compiled, stored
 from abut.mesh.quadrature import Rule
 
 
@@ -31,7 +32,7 @@ def integrate(
     Raises Inverted, under finite strains, and InputError for materials that return arrays of other shapes."""
     if group.kernel is not None:
         return _compiled(solids, group, group.kernel, rule, displacement, temperature, history, wanted)
-    after, done = [], 0
+    after, done, told = [], 0, 0
     for part, strain, (stress, slope, new) in evaluate(solids, group, rule, displacement, temperature, history):
         rows = slice(done, done := done + len(stress))
         if solids.kinematics == "finite":
@@ -41,12 +42,24 @@ def integrate(
                 part.cells, displacement, part.thermal, strain, stress, slope, solids.plane == "stress", wanted.force,
                 wanted.tangent, at_points,
             )  # fmt: skip
+            if wanted.energy is not None:
+                of_cells = slice(told, told := told + len(part.group.cells))
+                wanted.energy[of_cells] = _stored(solids, part, rule, strain, new)
         else:
             integrate_given(part.cells, stress, None if wanted.tangent is None else slope, wanted.force, wanted.tangent)
             if wanted.stress is not None:
                 wanted.stress[rows] = stress
         after.append(new)
     return after
+
+
+def _stored(solids: Solids, part: Part, rule: Rule, strain: Array, history: Array) -> Array | float:
+    """Elastic energy of each cell under finite strains; not a number of a material that does not tell it, or is warm."""
+    density = stored(part.material, strain, history)
+    if density is None or part.thermal is not None:
+        return np.nan
+    volumes = point_volumes(solids, part.group, rule)
+    return np.asarray((volumes * density.reshape(volumes.shape)).sum(axis=1))
 
 
 def _compiled(

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from abut.cli.run import add_set
 from abut.cli.terminal import show
 from abut.errors import InputError, closest
 
@@ -38,6 +39,7 @@ def add_verify(commands: Any) -> None:
     verify.add_argument("--levels", type=int, metavar="N", help="refine N times, fit the rate of convergence, plot it")
     verify.add_argument("--plot", type=Path, metavar="FILE", help="with --levels: save the plot (png, svg; matplotlib)")
     verify.add_argument("--job", type=Path, help="patch test of every contact of this job (or deck), on its own meshes")
+    add_set(verify)
     verify.add_argument("--json", action="store_true", help="print the results as JSON")
     verify.add_argument("--debug", action="store_true", help="print the traceback of an internal error")
     verify.set_defaults(command=_verify)
@@ -52,6 +54,7 @@ def add_infsup(commands: Any) -> None:
         epilog="exit status: 0 stable; 1 not stable; 2 bad input",
     )
     infsup.add_argument("job", type=Path, help="the job file or deck")
+    add_set(infsup)
     infsup.add_argument("--contact", metavar="NAME", help="which contact (all of them if left out)")
     infsup.add_argument(
         "--levels",
@@ -72,8 +75,8 @@ def _verify(arguments: argparse.Namespace) -> int:
         if arguments.names or arguments.levels is not None:
             raise InputError("verify: a job goes without benchmark names and --levels")
         return _verify_job(arguments)
-    if arguments.swap or arguments.output is not None:
-        raise InputError("verify: --swap and --output are for a job: abut verify job.toml --swap")
+    if arguments.swap or arguments.output is not None or arguments.set:
+        raise InputError("verify: --swap, --output and --set are for a job: abut verify job.toml --swap")
     from abut.benchmarks import BENCHMARKS, run
 
     for name in arguments.names:
@@ -196,10 +199,11 @@ def _plot(outcomes: Sequence[Outcome], path: Path) -> None:
 
 def _verify_job(arguments: argparse.Namespace) -> int:
     from abut.job import load_job
+    from abut.job.parameters import read_settings
     from abut.verify import interface_patch
     from abut.verify.interface_patch import describe
 
-    job = load_job(arguments.job)
+    job = load_job(arguments.job, settings=read_settings(arguments.set))
     if arguments.swap:
         from abut.cli.swap import verify_swap
 
@@ -215,11 +219,13 @@ def _verify_job(arguments: argparse.Namespace) -> int:
 
 def _infsup(arguments: argparse.Namespace) -> int:
     from abut.job import load_job
+    from abut.job.parameters import read_settings
     from abut.verify import inf_sup
 
     if arguments.levels < 1:
         raise InputError(f"infsup: --levels: expected a whole number >= 1, got {arguments.levels}")
-    models = [load_job(arguments.job, refine=level).model for level in range(arguments.levels)]
+    settings = read_settings(arguments.set)
+    models = [load_job(arguments.job, refine=level, settings=settings).model for level in range(arguments.levels)]
     names = [arguments.contact] if arguments.contact else [c.name for c in models[0].contacts if c.kind != "tied"]
     results = [inf_sup(models, name) for name in names or [None]]
     if arguments.json:

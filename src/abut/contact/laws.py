@@ -110,13 +110,16 @@ class Coulomb:
         if len(sliding):
             slip, drag = jump[sliding, 1:], traction[sliding, 1:]
             limit = self.friction if isinstance(self.friction, FrictionBound) else FrictionBound(self.friction)
-            bound, slope = limit.at(np.maximum(traction[:, 0] - self.stiffness * jump[:, 0], 0.0))
-            bound, slope = bound[sliding], slope[sliding, None, None]
+            pushed = traction[:, 0] - self.stiffness * jump[:, 0]
+            bound, slope = limit.at(np.maximum(pushed, 0.0))
+            # A closed point whose gap is still open: the bound goes on straight, so that its linear problem ends at mu p.
+            bound = (bound + slope * np.minimum(pushed, 0.0))[sliding]
+            slope = slope[sliding, None, None]
             trial = drag - self.stiffness * slip
             size = np.maximum(np.linalg.norm(trial, axis=1), 1e-300)
             along = trial / size[:, None]
             across = np.eye(c - 1) - along[:, :, None] * along[:, None]
-            turn = np.minimum(bound / size, 1.0)[:, None, None] * across
+            turn = np.clip(bound / size, 0.0, 1.0)[:, None, None] * across
             residual[sliding, 1:] = -soft * (drag - bound[:, None] * along)
             by_jump[sliding, 1:] = np.concatenate([-slope * along[:, :, None], -turn], axis=2)
             by_traction[sliding, 1:] = np.concatenate(

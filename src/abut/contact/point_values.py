@@ -209,7 +209,8 @@ def _stars(at: Averages, closed: Flags, places: Places) -> _Stars:
     usable = closed & (np.abs(at.share - 1.0) <= WHOLE) & of_second_order(at.surface, at.exact)
     count = np.bincount(one, _images(places.across, one, other), n)  # those on a plane are their own images
     enough = count >= c + c * (c + 1) // 2
-    inner = usable & enough & ~places.rim & ~_any(one, ~usable[other], n) & (np.bincount(one, minlength=n) > 0)
+    even = ~_any(one, (~usable | places.ends)[other], n)  # an average beside a pressure without bound is no quadratic's
+    inner = usable & enough & ~places.rim & even & (np.bincount(one, minlength=n) > 0)
     further = usable & ~inner & ~places.ends & _any(one, inner[other], n)
     edge = further & _any(one, ~closed[other], n)
     near = inner & _any(one, edge[other], n)

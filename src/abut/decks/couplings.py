@@ -18,6 +18,7 @@ from abut.model import Amplitude, Coupling, Force, Load, Moment
 from abut.model.conditions import COMPONENTS, TURNS
 
 MOTIONS = (*COMPONENTS, *TURNS)
+BESIDE = 1e-6  # of the extent of its nodes: distance of a reference from their middle that rounding does not leave
 
 
 @dataclass(frozen=True)
@@ -166,6 +167,25 @@ def unlisted_notes(deck: Deck) -> list[str]:
             "the line holds nothing there"
         ] = None
     return list(notes)
+
+
+def beside_notes(deck: Deck) -> list[str]:
+    """Forces at the reference node of a *DISTRIBUTING COUPLING that is not amid its nodes: their moment counts here."""
+    notes = []
+    for bound in deck.couplings:
+        forces = [v for s in deck.steps for v in s.values if v.kind == "force" and bound.reference in v.numbers]
+        if not (bound.weighted and forces):
+            continue
+        x = coordinates(deck, bound.nodes)
+        share = np.ones(len(x)) if bound.weights is None else bound.weights
+        apart = coordinates(deck, np.array([bound.reference]))[0] - share @ x / share.sum()
+        if np.linalg.norm(apart) > BESIDE * np.ptp(x, axis=0).max():
+            notes.append(
+                f"{forces[0].place}: *DISTRIBUTING COUPLING: reference node {bound.reference} is not amid its nodes: the "
+                "moment of its force about the middle of these is spread over them, too, as in Abaqus; CalculiX leaves it "
+                "out: put the node in the middle for that"
+            )
+    return notes
 
 
 def _unlisted(deck: Deck, kind: str) -> Iterator[tuple[Bound, Prescribed, int]]:

@@ -11,6 +11,7 @@ from abut.io.deck.nodal_constraints import Bonds
 from abut.io.deck.passing_supports import Stay
 from abut.io.deck.time_histories import Course, at, scaled, zero
 from abut.model import Amplitude, Hold
+from abut.model.hold import STAY
 from abut.types import Json
 
 AXES = "xyz"
@@ -29,12 +30,12 @@ class _Alike:
 
 def holds(bound: Bonds, groups: Groups) -> list[Hold]:
     """Nodes that are held alike together, components with the same times and course in one hold."""
-    by_node: dict[int, dict[_Alike, dict[int, float]]] = {}
+    by_node: dict[int, dict[_Alike, dict[int, float | str]]] = {}
     for (node, axis), stays in bound.passing.items():
         for stay in stays:
             size, alike = _sized(stay)
             by_node.setdefault(node, {}).setdefault(alike, {})[axis] = size
-    nodes: dict[tuple[_Alike, tuple[tuple[int, float], ...]], list[int]] = {}
+    nodes: dict[tuple[_Alike, tuple[tuple[int, float | str], ...]], list[int]] = {}
     for node, each in by_node.items():
         for alike, sizes in each.items():
             nodes.setdefault((alike, tuple(sorted(sizes.items()))), []).append(node)
@@ -47,7 +48,9 @@ def holds(bound: Bonds, groups: Groups) -> list[Hold]:
     return result
 
 
-def _sized(stay: Stay) -> tuple[float, _Alike]:
+def _sized(stay: Stay) -> tuple[float | str, _Alike]:
+    if stay.frozen:
+        return STAY, _Alike(stay.since, stay.reached, stay.until, stay.released, None)
     size, unit = scaled(stay.course)
     if zero(stay.course):
         unit = None

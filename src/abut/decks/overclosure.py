@@ -10,6 +10,7 @@ import numpy as np
 
 from abut.contact.overclosure import PressureOverclosure
 from abut.errors import InputError
+from abut.io.deck.reasons import DeckError
 from abut.io.deck.record import Deck
 from abut.model import Contact
 from abut.solution import Solution
@@ -43,7 +44,14 @@ def softened(contacts: Sequence[Contact], laws: Mapping[str, PressureOverclosure
 
 
 def overclosure_notes(deck: Deck, soft: bool) -> list[str]:
-    """What becomes of PRESSURE-OVERCLOSURE, pair by pair."""
+    """What becomes of PRESSURE-OVERCLOSURE, pair by pair. Raises InputError for one that changes and is asked for."""
+    for pair in deck.pairs:
+        if pair.changing and soft:
+            raise DeckError(
+                pair.place,
+                f"*CONTACT PAIR: the law of contact '{pair.name}' changes between steps, which --soft-contact does not do; "
+                "leave it out, or make a deck for each state",
+            )
     named = [(f"contact '{pair.name}'", pair.overclosure, pair.behaviour) for pair in deck.pairs]
     if deck.general is not None:
         named.append(("general contact", deck.general.overclosure, deck.general.behaviour))
@@ -52,6 +60,10 @@ def overclosure_notes(deck: Deck, soft: bool) -> list[str]:
         + ("solved as it is" if soft and points else "replaced by exact contact, without penetration")
         for what, kind, points in named
         if kind not in EXACT
+    ] + [
+        f"contact '{pair.name}': *CHANGE SURFACE BEHAVIOR: exact contact before and after"
+        for pair in deck.pairs
+        if pair.changing
     ]
 
 

@@ -12,7 +12,7 @@ from abut.io.deck.faces import element_nodes
 from abut.io.deck.groups import Piece
 from abut.io.deck.nodal_constraints import coordinates
 from abut.io.deck.reasons import DeckError
-from abut.io.deck.record import Coupling, Deck, Numbers, RigidBody
+from abut.io.deck.record import Coupling, Deck, Numbers, Prescribed, RigidBody
 from abut.io.deck.time_histories import Course, courses
 from abut.model import Rigid
 from abut.model.conditions import TURNS
@@ -45,23 +45,42 @@ def _components(given: Mapping[tuple[float, ...], Course], body: RigidBody) -> d
 
 def with_parts_coupled(deck: Deck, parts: Sequence[Piece], notes: list[str]) -> Deck:
     """The deck with rigid bodies that are parts of bodies only as kinematic couplings of their nodes, which is the same;
-    ``notes`` gets them. One with a turning node stays what it is."""
+    ``notes`` gets them. What is said of their turning nodes is said of directions 4 to 6 of the reference node."""
     whole: list[RigidBody] = []
     coupled: list[Coupling] = []
+    turned: dict[int, int] = {}
     free = list(parts)
     for body in deck.rigid:
         nodes, inside = _inside(deck, body, free)
         elements = np.concatenate([np.empty(0, np.int64), *(piece.elements for piece in inside)])
-        if body.turning or (inside and not len(np.setdiff1d(nodes, _nodes(deck, elements)))):
+        if inside and not len(np.setdiff1d(nodes, _nodes(deck, elements))):
             free = [piece for piece in free if not any(piece is other for other in inside)]
             whole.append(body)
             continue
+        if body.turning:
+            turned[body.turning] = body.reference
         name = f"rigid part of {body.reference}"
         coupled.append(Coupling(name, False, body.reference, "", nodes, frozenset(range(1, 7)), None, body.place))
         notes.append(
             f"{body.place}: *RIGID BODY is part of a body: its nodes are coupled to node {body.reference} (kinematic)"
         )
-    return replace(deck, rigid=tuple(whole), couplings=(*deck.couplings, *coupled))
+    fixed = tuple(each for value in deck.fixed for each in _as_turns(value, turned))
+    steps = tuple(
+        replace(step, values=tuple(each for value in step.values for each in _as_turns(value, turned)))
+        for step in deck.steps
+    )
+    return replace(deck, rigid=tuple(whole), couplings=(*deck.couplings, *coupled), fixed=fixed, steps=steps)
+
+
+def _as_turns(value: Prescribed, turned: Mapping[int, int]) -> list[Prescribed]:
+    """A value with what it says of turning nodes, of which ``turned`` has the references, as that of directions 4 to 6."""
+    here = [node for node in turned if node in value.numbers]
+    if value.kind not in ("boundary", "force") or not here:
+        return [value]
+    directions = tuple(direction + 3 for direction in value.directions if direction <= 3)
+    made = [replace(value, numbers=np.array([turned[node]]), directions=directions) for node in here if directions]
+    left = np.setdiff1d(value.numbers, here)
+    return [*([replace(value, numbers=left)] if len(left) else []), *made]
 
 
 def _inside(deck: Deck, body: RigidBody, free: Sequence[Piece]) -> tuple[Numbers, list[Piece]]:

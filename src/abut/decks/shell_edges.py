@@ -15,11 +15,12 @@ from abut.io.deck.record import Coupling, Deck, Numbers, Prescribed, Step
 from abut.mesh.thin.edges import edges_of, with_middles
 
 
-def quadratic(deck: Deck) -> Deck:
-    """The deck with quadratic shells only."""
+def quadratic(deck: Deck) -> tuple[Deck, Numbers, Numbers]:
+    """The deck with quadratic shells only, the nodes (m,) that are new, and the ends (m, 2) of the edges they are in the
+    middle of."""
     thin = [block for block in deck.blocks if block.type.thin and len(edges_of(block.type.kind))]
     if not thin:
-        return deck
+        return deck, np.empty(0, np.int64), np.empty((0, 2), np.int64)
     rows = [np.searchsorted(deck.nodes, block.nodes) for block in thin]
     points, cells, ends = with_middles(deck.points, [(block.type.kind, r) for block, r in zip(thin, rows)])
     taken = [int(deck.nodes.max()), *deck.references, *(section.node for section in deck.pretension)]
@@ -36,7 +37,7 @@ def quadratic(deck: Deck) -> Deck:
     rim = [i for i in range(len(ends)) if times[first + i] == 1 and first + i not in bars]
     middles = _Middles(nodes[first:][rim], deck.nodes[ends[rim]])
     every = _Middles(nodes[first:], deck.nodes[ends])
-    return replace(
+    new = replace(
         deck,
         nodes=nodes,
         points=points,
@@ -48,6 +49,7 @@ def quadratic(deck: Deck) -> Deck:
         initial=every.mean(deck.initial),
         steps=tuple(every.warmed(middles.of_step(step)) for step in deck.steps),
     )
+    return new, every.nodes, every.ends
 
 
 class _Middles:

@@ -8,20 +8,21 @@ from pathlib import Path
 
 import numpy as np
 
-from abut.bodies.loads import stress_load, surface_area
 from abut.contact.overclosure import PressureOverclosure
 from abut.contact.sides import bodies_of, find_sides
 from abut.decks.adjusting import adjusted
 from abut.decks.body_loads import body_loads
 from abut.decks.clearance import bilateral_note, gap_options
-from abut.decks.couplings import couplings, reference_loads, reference_nodes, unlisted_notes
+from abut.decks.couplings import beside_notes, couplings, reference_loads, reference_nodes, unlisted_notes
 from abut.decks.elastic import elastic_law
+from abut.decks.element_notes import element_notes
 from abut.decks.expanded import expanded
 from abut.decks.friction import friction_options, path_notes
 from abut.decks.holds import holds
 from abut.decks.large import finite_notes, is_finite, load_steps, plastic_steps, unsupported, yields
 from abut.decks.metal import metal_law
 from abut.decks.modes import modes, with_stiff_beams
+from abut.decks.nodal import equations, forces, supports
 from abut.decks.output import output_options, tables, with_tables
 from abut.decks.overclosure import overclosure_notes, own_laws, softened
 from abut.decks.plane import plane_of, thickness
@@ -29,45 +30,39 @@ from abut.decks.rigid import join, rigid_bodies, with_parts_coupled
 from abut.decks.rubber import of_rubber
 from abut.decks.springs import spring_notes, springs
 from abut.decks.temperatures import history, temperatures
+from abut.decks.tied_nodes import SAME_WAY, looks, with_ties_by_node
 from abut.detection import add_surfaces, find_contacts
 from abut.errors import InputError
 from abut.io.deck import read_deck
-from abut.io.deck.elements import FACES
+from abut.io.deck.elements import FACES, SHELLS
 from abut.io.deck.groups import Groups, Piece, pieces
-from abut.io.deck.nodal_constraints import Bonds, bonds
+from abut.io.deck.nodal_constraints import bonds
 from abut.io.deck.pretension import cut
 from abut.io.deck.reasons import DeckError, Reasons
 from abut.io.deck.record import Deck, GeneralContact, Numbers, Pair
 from abut.io.deck.ties import near, tie_notes
-from abut.io.deck.time_histories import Course, courses, period, scaled, times, zero
+from abut.io.deck.time_histories import Course, courses, period, times, zero
 from abut.materials.material import Material
 from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
 from abut.mesh.read import build
 from abut.model import (
-    Amplitude,
     Contact,
     Coupling,
     Equation,
     Hold,
     Load,
     Model,
-    NodalForce,
     Pressure,
     Rigid,
     Solid,
     SolveOptions,
     Spring,
     Support,
-    Term,
 )
 from abut.output.options import Output
-from abut.types import Json
 
 AXES = "xyz"
-SAME_WAY = (
-    0.9  # of two surfaces that cannot touch: product of their mean normals (short ones where a surface bends round)
-)
 
 
 @dataclass(frozen=True)
@@ -102,16 +97,17 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     if not deck.steps:
         raise InputError("no *STEP with *STATIC in the deck, or none left; abut solves these")
     if not deck.blocks:
-        raise InputError("the deck has no *ELEMENT cards")
+        raise InputError("the deck has no *ELEMENT cards of solids, shells or beams; add a body, even for springs")
     reasons = Reasons()
     for error in unsupported(deck):
         reasons.add(error)
     plane, deck = plane_of(deck), with_stiff_beams(deck)
     notes = [f"{block.code}: {block.type.instead}" for block in deck.blocks if block.type.instead]
+    notes += element_notes(deck)
     deck = cut(expanded(deck, is_finite(deck)))
     notes = [*deck.notes, *notes, *overclosure_notes(deck, soft), *finite_notes(deck), *spring_notes(deck)]
     made = pieces(deck)
-    deck = with_parts_coupled(deck, made, notes)
+    deck = with_ties_by_node(with_parts_coupled(deck, made, notes), notes)
     groups = Groups(deck)
     every, stiff = join(deck, made)
     parts = {groups.body(piece.name, piece.elements): piece for piece in every}
@@ -123,7 +119,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
             contacts.append(_contact(deck, groups, pair, hard, notes))
     solids = _solids(deck, {name: piece for name, piece in parts.items() if name not in moving}, plane, reasons)
     rigid, bound = _referenced(deck, groups, moving, plane, reasons)
-    notes += [*_idle(deck, groups), *unlisted_notes(deck)]
+    notes += [*_idle(deck, groups), *unlisted_notes(deck), *beside_notes(deck)]
     references = dict(zip([*moving, *(coupling.name for coupling in bound)], reference_nodes(deck)))
     prescribed = _prescribed(deck, groups, parts, plane, references, notes, reasons)
     asked = tables(deck, groups, notes)
@@ -132,6 +128,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     notes += mesh.notes
     mesh, contacts = adjusted(mesh, deck, groups, contacts, notes)
     check_mesh(mesh)
+    mesh = replace(mesh, shells=tuple(name for name, piece in parts.items() if set(piece.codes) <= SHELLS))
     for contact, pair in zip(contacts, deck.pairs):
         with reasons.gathered():
             _check_sides(mesh, contact, pair)
@@ -200,10 +197,10 @@ def _prescribed(
         result.springs.extend(springs(deck, groups, plane, thick))
     with reasons.gathered():
         bound = bonds(deck, groups, plane)
-        result.supports.extend(_supports(bound, groups))
+        result.supports.extend(supports(bound, groups))
         result.holds.extend(holds(bound, groups))
-        result.equations.extend(_equations(bound, groups))
-        result.loads.extend(_forces(bound, groups, plane, thick))
+        result.equations.extend(equations(bound, groups))
+        result.loads.extend(forces(bound, groups, plane, thick))
     with reasons.gathered():
         result.loads.extend(reference_loads(deck, references, plane, thick))
     for others in (_pressures(deck, groups), body_loads(deck, parts, plane), temperatures(deck, groups)):
@@ -298,66 +295,13 @@ def _check_sides(mesh: Mesh, contact: Contact, pair: Pair) -> None:
     first, second = contact.named
     if first == second:
         return
-    sides = find_sides(mesh, first, second)
-    push = [stress_load(side, np.eye(mesh.dim)).reshape(-1, mesh.dim).sum(axis=0) for side in sides]
-    a, b = (normal / max(surface_area(side), 1e-300) for normal, side in zip(push, sides))
+    a, b = (looks(side) for side in find_sides(mesh, first, second))
     if a @ b > SAME_WAY:
-        card = "*TIE" if pair.tied and pair.adjust == "all" else "*CONTACT PAIR"
         raise DeckError(
             pair.place,
-            f"{card}: '{pair.slave}' and '{pair.master}' look the same way: their bodies overlap; abut "
+            f"*CONTACT PAIR: '{pair.slave}' and '{pair.master}' look the same way: their bodies overlap; abut "
             "needs surfaces that face each other: choose other faces, or join the meshes",
         )
-
-
-def _supports(bound: Bonds, groups: Groups) -> list[Support]:
-    """Nodes held alike together; components with the same course over time in one support."""
-    by_node: dict[int, dict[int, Course]] = {}
-    for (node, axis), course in bound.supports.items():
-        by_node.setdefault(node, {})[axis] = course
-    alike: dict[tuple[tuple[int, Course], ...], list[int]] = {}
-    for node, histories in by_node.items():
-        alike.setdefault(tuple(sorted(histories.items())), []).append(node)
-    result: list[Support] = []
-    for key, nodes in alike.items():
-        on = groups.node_set(np.array(nodes), f"support-{len(result) + 1}")
-        still = {AXES[axis]: 0.0 for axis, course in key if zero(course)}
-        moving: dict[Course | None, Json] = {}
-        for axis, course in key:
-            if not zero(course):
-                size, unit = scaled(course)
-                moving.setdefault(unit, {})[AXES[axis]] = size
-        for unit, values in (moving or {None: {}}).items():
-            amplitude = None if unit is None else Amplitude(unit)
-            result.append(Support(on, **(values | still), amplitude=amplitude))
-            still = {}
-    return result
-
-
-def _equations(bound: Bonds, groups: Groups) -> list[Equation]:
-    return [
-        Equation(
-            tuple(Term(groups.node_set(np.array([n]), f"n{n}"), AXES[k], c) for (n, k), c in bond.terms.items()),
-            *history(bond.course),
-        )
-        for bond in bound.bonds
-    ]
-
-
-def _forces(bound: Bonds, groups: Groups, plane: str | None, thickness: float) -> list[Load]:
-    by_node: dict[tuple[int, Course | None], dict[int, float]] = {}
-    for (node, axis), course in bound.forces.items():
-        if not zero(course):
-            size, unit = scaled(course)
-            by_node.setdefault((node, unit), {})[axis] = size / thickness
-    alike: dict[tuple[Course | None, tuple[float, ...]], list[int]] = {}
-    for (node, unit), histories in by_node.items():
-        vector = tuple(histories.get(axis, 0.0) for axis in range(2 if plane else 3))
-        alike.setdefault((unit, vector), []).append(node)
-    return [
-        NodalForce(groups.node_set(np.array(nodes), f"force-{i}"), vector, None if unit is None else Amplitude(unit))
-        for i, ((unit, vector), nodes) in enumerate(alike.items(), start=1)
-    ]
 
 
 def _pressures(deck: Deck, groups: Groups) -> Iterator[Load]:

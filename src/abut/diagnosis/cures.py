@@ -14,6 +14,7 @@ from abut.diagnosis.contactor import swap
 from abut.model import LAWS, METHODS, Contact
 from abut.model.locking import locking
 from abut.solution import Check, ContactResult, Solution
+from abut.solution.flow import GO_ON
 from abut.solution.modes import BUCKLING, FREQUENCIES
 from abut.solution.stress_error import ContactStressError
 
@@ -72,6 +73,7 @@ MODEL = {
     "meant to be one, tie them or let them share nodes",
     "plastic strain": 'with small kinematics: kinematics = "finite"; with finite: check loads and yield stress, strains of '
     "this size stretch cells to more than twice their length",
+    "limit load": GO_ON,
     "preload": "what is loaded at the section of a preload carries none of it: tighten before the loads come, in steps of "
     "their own, and let the section cut all of one body",
     "loose bolts": "tighten the bolt more, or load it less: a bolt carries no compression",

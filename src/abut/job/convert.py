@@ -84,6 +84,7 @@ def job_table(model: Model, mesh: str, output: Output = EVERYTHING) -> Json:
         "preloads",
         "springs",
         "holds",
+        "penetrations",
         "probes",
     ):
         kinds: dict[str, Callable[[Any], Json]] = {"loads": _load, "contacts": _contact}

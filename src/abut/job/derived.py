@@ -41,7 +41,10 @@ class Of:
 
 
 def table_of(
-    record: type, others: Mapping[str, Any] | None = None, meaning: str | None = None, kind: str = ""
+    record: type,
+    others: Mapping[str, Any] | None = None,
+    meaning: str | None = None,
+    kind: str = "",
 ) -> type[Table]:
     """The table of a record (a dataclass): a key for each of its fields, those that must be given first.
 

@@ -35,6 +35,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "preloads": "bolts that are tightened: sections of bodies whose sides are drawn together",
         "springs": "springs to the ground, between points, and beds under surfaces",
         "holds": "supports that come or go on the way",
+        "penetrations": "fluids under pressure that enter contacts wherever these are open",
         "rotations": "surfaces, node sets and bodies that turn about an axis; not with small kinematics",
         "probes": "points, lines and sets of nodes whose results are listed for every step",
         "steps": "parts of the time, one after the other, whose names stand for times",
@@ -46,6 +47,17 @@ MEANINGS: dict[str, dict[str, str]] = {
     "MeshTable": {
         "file": "mesh file beside the job file (.msh, .vtu, or .inp, of which the mesh alone is read)",
         "bodies": "bodies meshed by abut, by name",
+        "shells": "groups of surface cells in the file that are shells, by name",
+        "beams": "groups of lines in the file that are beams, by name",
+    },
+    "ShellTable": {
+        "thickness": "of the shell, > 0 [length]",
+        "offset": "of the mesh from the middle of the shell along the normal, over the thickness: 0.5 on the positive side",
+    },
+    "BeamTable": {
+        "widths": "of the rectangular section along its first direction and along the second, tangent x first, > 0 [length]",
+        "direction": "near which the first direction lies",
+        "offsets": "of the mesh from the middle of the section along both, over the widths",
     },
     "BodyTable": {"kind": "the generator; the further keys are its arguments"},
     "ModelTable": {
@@ -175,6 +187,9 @@ MEANINGS: dict[str, dict[str, str]] = {
         "x": "displacement along x, a number or an expression; left out: free [length]",
         "y": "displacement along y, a number or an expression; left out: free [length]",
         "z": "displacement along z (3D only), a number or an expression; left out: free [length]",
+        "rx": "turn about x of nodes of shells and beams, a number or an expression; left out: free [radian]",
+        "ry": "turn about y of nodes of shells and beams, a number or an expression; left out: free [radian]",
+        "rz": "turn about z of nodes of shells and beams, a number or an expression; left out: free [radian]",
         "normal": "displacement along the surface's own outward normal, instead of x, y, z [length]",
         "axes": "local axes, along whose first, second and third direction x, y and z then are, at each undeformed node",
     },
@@ -221,10 +236,11 @@ MEANINGS: dict[str, dict[str, str]] = {
         "on": "name of the body; left out: all bodies",
         "amplitude": "of the force: the square of that of the speed",
     },
-    "NodalForceTable": {
+    "MidForceTable": {
         "kind": "the same force at each node of a set",
         "on": "name of the node set or surface",
         "value": "vector at each node; plane models: per unit thickness, axisymmetric: of the full circumference [force]",
+        "moment": "vector at each node of shells and beams [force length]",
     },
     "TemperatureTable": {
         "kind": "change of temperature, which strains bodies by their expansion",
@@ -299,6 +315,13 @@ MEANINGS: dict[str, dict[str, str]] = {
         "until": "time up to which it acts; left out: to the end",
         "released": "time at which its force is gone; left out: the end",
         "amplitude": "of x, y, z over time; left out: from 0 at since to 1 at reached",
+    },
+    "PenetrationTable": {
+        "contact": "name of the contact, of which both surfaces feel the fluid wherever it gets",
+        "source": "where the fluid comes from: a surface or node set that meets one of the contact's sides, or a point, "
+        "whose nearest node counts",
+        "value": "pressure of the fluid, > 0; it gets through what is open, and what is pressed by less [force/length^2]",
+        "name": "a name of your choice, for results; left out: that of the contact",
     },
     "PreloadTable": {
         "name": "a name of your choice, used in messages and results",

@@ -13,12 +13,14 @@ from pydantic import BaseModel, ValidationError
 from abut.contact.overclosure import PressureOverclosure
 from abut.errors import InputError, nearest
 from abut.io.toml import read_toml
+from abut.job.acting import acting, parts
 from abut.job.contacts import Resolved, resolve_contacts
 from abut.job.load_tables import LOADS
 from abut.job.material_tables import MATERIALS
 from abut.job.other_names import key_called, kind_said
 from abut.job.parameters import parameters, worked_out
 from abut.job.schema import EquationTable, JobFile, MeshTable
+from abut.job.thin import with_thin
 from abut.job.times import with_shares
 from abut.job.values import values
 from abut.materials.material import Material
@@ -34,6 +36,7 @@ from abut.model import (
     Hold,
     Load,
     Model,
+    Penetration,
     Preload,
     Probe,
     Rigid,
@@ -44,6 +47,7 @@ from abut.model import (
     Support,
     Term,
 )
+from abut.model.conditions import TURNS
 from abut.output.options import Output
 from abut.types import Json
 
@@ -112,7 +116,8 @@ def load_job(
     said = [
         f"parameter {name} = {value:g}{' (set)' if name in (settings or {}) else ''}" for name, value in names.items()
     ]
-    notes = (*said, *model.mesh.notes, *resolved.notes)
+    steps = acting(model, parts(file.steps, model.solve.end)) if file.steps else ()
+    notes = (*said, *model.mesh.notes, *resolved.notes, *steps)
     return Job(
         model, path.parent / file.output.directory, path, text, notes, resolved.entries, output=output, parameters=names
     )
@@ -138,30 +143,47 @@ def _deck(path: Path, refine: int, ignore: Collection[str], soft: bool) -> Job:
 
 def _model(file: JobFile, folder: Path, refine: int) -> tuple[Model, Resolved]:
     materials = _materials(file.materials)
+    thin = with_thin(file, folder, _mesh(file.mesh, folder, refine))
     solids = []
     for i, s in enumerate(file.solids):
         if s.material not in materials:
             raise InputError(f"solids[{i}].material: no material named {s.material!r}{nearest(s.material, materials)}")
-        solids.append(Solid(s.body, materials[s.material], s.temperature, s.integration))
-    resolved = resolve_contacts(
-        file.contacts, _mesh(file.mesh, folder, refine), solids, file.model.kinematics == "finite"
-    )
+        how = thin.integration(s.body, s.integration)
+        solids.append(Solid(s.body, materials[s.material], s.temperature, how))
+    resolved = resolve_contacts(file.contacts, thin.thick.mesh, solids, file.model.kinematics == "finite")
     model = Model(
         mesh=resolved.mesh,
         plane=file.model.plane,
         kinematics=file.model.kinematics,
         solids=solids,
-        supports=[Support(**values(s, f"supports[{i}]")) for i, s in enumerate(file.supports)],
-        loads=[_load(load, f"loads[{i}]") for i, load in enumerate(file.loads)],
+        supports=[
+            *(
+                Support(**values(s, f"supports[{i}]", TURNS))
+                for i, s in enumerate(file.supports)
+                if i not in thin.supports
+            ),
+            *thin.thick.supports,
+        ],
+        loads=[
+            *(_load(load, f"loads[{i}]") for i, load in enumerate(file.loads) if i not in thin.loads),
+            *thin.thick.loads,
+        ],
         contacts=resolved.contacts,
         solve=SolveOptions(**file.solve.model_dump()),
-        equations=[_equation(equation, f"equations[{i}]") for i, equation in enumerate(file.equations)],
+        equations=[
+            *(_equation(equation, f"equations[{i}]") for i, equation in enumerate(file.equations)),
+            *thin.thick.equations,
+        ],
         rigid=[Rigid(**values(r, f"rigid[{i}]")) for i, r in enumerate(file.rigid)],
         rotations=[Rotation(**values(r, f"rotations[{i}]")) for i, r in enumerate(file.rotations)],
-        couplings=[Coupling(**values(c, f"couplings[{i}]")) for i, c in enumerate(file.couplings)],
+        couplings=[
+            *(Coupling(**values(c, f"couplings[{i}]")) for i, c in enumerate(file.couplings)),
+            *thin.thick.couplings,
+        ],
         preloads=[Preload(**values(p, f"preloads[{i}]")) for i, p in enumerate(file.preloads)],
         springs=[Spring(**values(s, f"springs[{i}]")) for i, s in enumerate(file.springs)],
         holds=[Hold(**values(h, f"holds[{i}]")) for i, h in enumerate(file.holds)],
+        penetrations=[Penetration(**values(p, f"penetrations[{i}]")) for i, p in enumerate(file.penetrations)],
         probes=[Probe(**values(probe, f"probes[{i}]")) for i, probe in enumerate(file.probes)],
         modes=[
             *([] if file.frequencies is None else [Frequencies(**file.frequencies.model_dump())]),
@@ -201,18 +223,21 @@ def _material(name: str, table: Any, others: Mapping[str, Material]) -> Material
 
 
 def _load(table: BaseModel, where: str) -> Load:
-    given = values(table, where)
+    given = values(table, where, ("moment",))
     made: Load = LOADS[given.pop("kind")](**given)
     return made
 
 
-def _mesh(table: MeshTable, folder: Path, refine: int) -> Mesh:
+def _mesh(table: MeshTable, folder: Path, refine: int) -> Mesh | None:
+    """None where shells and beams are to be made solid."""
     if (table.file is None) == (not table.bodies):
         raise InputError('mesh: give either file = "..." or bodies ([mesh.bodies.NAME]), not both or neither')
     if table.file is not None:
         if refine:
             raise InputError("mesh.file: only meshes that abut makes (mesh.bodies) can be refined; leave --levels out")
-        return Mesh.read(folder / table.file)
+        return None if table.shells or table.beams else Mesh.read(folder / table.file)
+    if table.shells or table.beams:
+        raise InputError("mesh.shells, mesh.beams: they name groups of a mesh file; give file instead of bodies")
     meshes = {}
     for name, body in table.bodies.items():
         where = f"mesh.bodies.{name}"

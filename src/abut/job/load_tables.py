@@ -8,6 +8,7 @@ from typing import Any
 from abut.job.derived import one_of, table_of
 from abut.job.table import Varying
 from abut.model import Centrifugal, Force, Gravity, Moment, NodalForce, Pressure, Temperature, Traction
+from abut.thin.records import MidForce
 
 LOADS: Mapping[str, type] = {
     "pressure": Pressure, "traction": Traction, "force": Force, "moment": Moment,
@@ -19,9 +20,10 @@ SAID: Mapping[type, Mapping[str, Any]] = {  # types of keys that say more than t
     Temperature: {"value": Varying},
 }
 MEANING: Mapping[type, str] = {
-    NodalForce: "force at each node of the set",
+    MidForce: "force at each node of the set",
     Temperature: "change of temperature at the nodes, degrees",
 }
 
-TABLES = tuple(table_of(record, SAID.get(record), MEANING.get(record), kind) for kind, record in LOADS.items())
+KEYS: Mapping[str, type] = {**LOADS, "nodal-force": MidForce}  # at nodes of shells and beams with a moment
+TABLES = tuple(table_of(record, SAID.get(record), MEANING.get(record), kind) for kind, record in KEYS.items())
 LOAD = one_of(TABLES)

@@ -13,7 +13,7 @@ from abut.job.load_tables import LOAD
 from abut.job.material_tables import MATERIAL, AxesTable
 from abut.job.run_tables import BUCKLING, FREQUENCIES, SOLVE, OutputTable, StepTable
 from abut.job.table import Number, OneOf, Points, Table, Time, Varying
-from abut.model import Hold, Preload, Rotation, Spring
+from abut.model import Hold, Penetration, Preload, Rotation, Spring
 from abut.model.contact import GEOMETRIES, KINDS, LAWS, METHODS, PRESSURES, RULES, Contact, Integration
 from abut.model.coupling import KINDS as COUPLINGS
 from abut.model.coupling import Coupling
@@ -21,6 +21,7 @@ from abut.model.hold import STAY
 from abut.model.kinematics import KINEMATICS
 from abut.model.probe import QUANTITIES
 from abut.model.step_choice import WORDS as STEPS
+from abut.thin.records import Beam, Shell
 from abut.types import Json
 
 # Checked by the model's own record, which says once what is wrong where a choice of types would say it for each.
@@ -49,9 +50,15 @@ class BodyTable(BaseModel):
     kind: str
 
 
+SHELL = table_of(Shell, meaning="a group of surface cells that its thickness makes solid")
+BEAM = table_of(Beam, meaning="a group of lines that a rectangular section makes solid")
+
+
 class MeshTable(Table):
     file: str | None = None
     bodies: dict[str, BodyTable] = {}
+    shells: Annotated[dict[str, Any], Of(dict[str, SHELL])] = {}
+    beams: Annotated[dict[str, Any], Of(dict[str, BEAM])] = {}
 
 
 class ModelTable(Table):
@@ -71,6 +78,9 @@ class SupportTable(Table):
     x: Varying = None
     y: Varying = None
     z: Varying = None
+    rx: Varying = None
+    ry: Varying = None
+    rz: Varying = None
     normal: Number | None = None
     amplitude: Points | None = None
     axes: AxesTable | None = None
@@ -156,6 +166,9 @@ HOLD = table_of(
     {**dict.fromkeys("xyz", Led), "since": Time, **dict.fromkeys(("reached", "until", "released"), Time | None)},
     "a support that comes or goes on the way",
 )
+PENETRATION = table_of(
+    Penetration, {"source": str | list[Number]}, "a fluid under pressure that enters a contact where it is open"
+)
 
 
 class IntegrationTable(Table):
@@ -223,6 +236,7 @@ class JobFile(Table):
     preloads: list[Annotated[Table, Of(PRELOAD)]] = []
     springs: list[Annotated[Table, Of(SPRING)]] = []
     holds: list[Annotated[Table, Of(HOLD)]] = []
+    penetrations: list[Annotated[Table, Of(PENETRATION)]] = []
     probes: list[ProbeTable] = []
     steps: list[StepTable] = []
     frequencies: Annotated[Table, Of(FREQUENCIES)] | None = None

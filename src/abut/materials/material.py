@@ -84,6 +84,11 @@ class OwnMaterial:
         """What integrates it in the compiled core; None: it is evaluated in Python."""
         return None
 
+    def stored(self, strain: Array, history: Array) -> Array | None:
+        """Elastic energy per undeformed volume (n,) at strains of Green and Lagrange (n, 6) with the history (n, h) that
+        ``evaluate_finite`` has returned there, for the balance of energy; None: it is not told."""
+        return None
+
     def check(self, dim: int, plane: str | None, where: str) -> None:
         """Raise InputError, beginning with ``where``, for a model of ``dim`` dimensions and a plane assumption (as of
         ``Model``) that it cannot be in."""
@@ -103,6 +108,13 @@ def compiled(material: Material, finite: bool) -> Compiled | None:
     """As ``OwnMaterial.compiled``, None of materials that do not say."""
     said = getattr(material, "compiled", None)
     return None if said is None else said(finite)
+
+
+def stored(material: Material, strain: Array, history: Array) -> Array | None:
+    """As ``OwnMaterial.stored``, None of materials that do not say."""
+    told = getattr(material, "stored", None)
+    energy = None if told is None else told(strain, history)
+    return None if energy is None else np.asarray(energy, dtype=float)
 
 
 def check_model(material: Material, dim: int, plane: str | None, where: str) -> None:

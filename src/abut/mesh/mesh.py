@@ -35,6 +35,8 @@ class Mesh(MeshRecord):
         The coordinates are (r, z) with r >= 0, and integrals run round the axis.
     notes : tuple of str
         What was changed when the mesh was read, in words.
+    shells : tuple of str
+        Bodies that are shells made solid (``thicken``, decks).
 
     Raises
     ------

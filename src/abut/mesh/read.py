@@ -34,14 +34,19 @@ READERS = {".msh": read_gmsh, ".vtu": read_vtu, ".inp": read_abaqus}
 def read_mesh(kind: type[Kind], path: Path) -> Kind:
     """Read and check a mesh file by its ending. kind: the record to make. Raises InputError with the remedy for anything
     unsound."""
+    mesh = build(kind, read_raw(path), str(path))
+    check_mesh(mesh)
+    return mesh
+
+
+def read_raw(path: Path) -> RawMesh:
+    """What a mesh file holds, by its ending. Raises InputError for one that is missing or of another kind."""
     reader = READERS.get(path.suffix.lower())
     if reader is None:
         raise InputError(f"{path}: unknown mesh format '{path.suffix}'; supported: {', '.join(READERS)}")
     if not is_file(path):
         raise InputError(f"mesh file {path} does not exist")
-    mesh = build(kind, reader(path), str(path))
-    check_mesh(mesh)
-    return mesh
+    return reader(path)
 
 
 def build(kind: type[Kind], raw: RawMesh, where: str = "mesh") -> Kind:
@@ -106,8 +111,8 @@ def _points(every: NDArray[np.float64], used: NDArray[np.int64], top: int, where
         return points
     if np.ptp(points[:, 2]) > 1e-9 * np.ptp(points, axis=0).max():
         raise InputError(
-            f"{where}: the highest cells are triangles or quadrilaterals, but not in a plane z = constant, and shells "
-            "are not supported; for a solid give its volume a physical group, so that its cells are saved"
+            f"{where}: the highest cells are triangles or quadrilaterals, but not in a plane z = constant; give them a "
+            "thickness (mesh.shells), or, for a solid, its volume a physical group, so that its cells are saved"
         )
     return points[:, :2]
 

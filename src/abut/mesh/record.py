@@ -27,6 +27,7 @@ class MeshRecord:
     node_sets: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)
     axisymmetric: bool = False
     notes: tuple[str, ...] = ()
+    shells: tuple[str, ...] = ()  # bodies that are shells made solid: their cells go once through the thickness
 
     def __post_init__(self) -> None:
         points = checks.numbers(self.points, "mesh: points", (None, None))

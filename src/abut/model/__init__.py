@@ -9,6 +9,7 @@ from abut.model.hold import Hold
 from abut.model.loads import Force, Moment, NodalForce, Pressure, Temperature, Traction
 from abut.model.model import PLANES, Model
 from abut.model.modes import Buckling, Frequencies
+from abut.model.penetration import Penetration
 from abut.model.preload import Preload
 from abut.model.probe import Probe
 from abut.model.rotation import Rotation
@@ -19,6 +20,6 @@ from abut.model.spring import Spring
 __all__ = [
     "LAWS", "METHODS", "PLANES", "PRESSURES", "RULES", "Amplitude", "Axes", "BodyForce", "Buckling", "Centrifugal",
     "Contact", "Coupling", "Equation", "Force", "Frequencies", "Gravity", "History", "Hold", "Integration", "Load", "Model",
-    "Moment", "NodalForce", "Preload", "Pressure", "Probe", "Rigid", "Rotation", "Solid", "SolveOptions", "Spring",
-    "Support", "Temperature", "Term", "Traction",
+    "Moment", "NodalForce", "Penetration", "Preload", "Pressure", "Probe", "Rigid", "Rotation", "Solid", "SolveOptions",
+    "Spring", "Support", "Temperature", "Term", "Traction",
 ]  # fmt: skip

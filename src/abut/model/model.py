@@ -34,15 +34,17 @@ from abut.mesh.check import check_entries
 from abut.mesh.mesh import Mesh
 from abut.mesh.record import MeshRecord
 from abut.model.body_forces import Load
-from abut.model.conditions import COMPONENTS, Equation, History, Rigid, Support
+from abut.model.conditions import Equation, History, Rigid, Support
 from abut.model.consistency import check_equations, check_filled, check_loads, check_rigid, check_supports
 from abut.model.contact import GEOMETRIES, Contact
 from abut.model.coupling import Coupling, check_couplings, moving_points
-from abut.model.hold import STAY, Hold, check_holds
+from abut.model.hold import Hold, check_holds
 from abut.model.kinematics import check_finite, check_kinematics
 from abut.model.modes import Buckling, Frequencies
+from abut.model.penetration import Penetration, check_penetrations
 from abut.model.physics import TEMPERATURE, Physics, dofs_of
 from abut.model.preload import Preload, cut_sections
+from abut.model.prescribed import largest_prescribed
 from abut.model.probe import Probe, check_probes
 from abut.model.rotation import Rotation, check_rotations
 from abut.model.side_choice import SAME, decided, held_points, measured
@@ -56,7 +58,7 @@ PLANES = ("strain", "stress", "axisymmetric")
 RECORDS: dict[str, tuple[type, ...]] = {  # what the lists of a model are of
     "solids": (Solid,), "supports": (Support,), "loads": get_args(Load), "contacts": (Contact,), "equations": (Equation,),
     "rigid": (Rigid,), "probes": (Probe,), "rotations": (Rotation,), "couplings": (Coupling,), "preloads": (Preload,),
-    "springs": (Spring,), "holds": (Hold,), "modes": (Frequencies, Buckling),
+    "springs": (Spring,), "holds": (Hold,), "penetrations": (Penetration,), "modes": (Frequencies, Buckling),
 }  # fmt: skip
 
 
@@ -100,8 +102,8 @@ class Model:
         Points that move with a reference.
     preloads : sequence of Preload
         Bolts that are tightened; the mesh is cut open at their sections.
-    springs, holds : sequences of Spring and of Hold
-        Springs to the ground, between points, beds under surfaces; supports that come or go.
+    springs, holds, penetrations : sequences of Spring, of Hold and of Penetration
+        Springs to ground, between points, beds; supports that come or go; fluids that enter contacts.
     physics : sequence of abut.model.physics.Physics
         Fields beside displacements, with terms of their own in the balance; on one process, with the direct solver.
     modes : sequence of Frequencies and Buckling
@@ -147,6 +149,7 @@ class Model:
     preloads: Sequence[Preload] = ()
     springs: Sequence[Spring] = ()
     holds: Sequence[Hold] = ()
+    penetrations: Sequence[Penetration] = ()
     physics: Sequence[Physics] = ()
     modes: Sequence[Frequencies | Buckling] = ()
 
@@ -168,6 +171,7 @@ class Model:
         self._check_contacts()
         check_springs(self.mesh, self.springs)
         object.__setattr__(self, "holds", check_holds(self.mesh, self.holds))
+        object.__setattr__(self, "penetrations", check_penetrations(self.mesh, self.penetrations, self.contacts))
         check_kinematics(self.kinematics, self.solids)
         moving = moving_points(self.mesh, self.rigid, self.couplings)
         check_rotations(self.mesh, self.rotations, self.supports, moving, self.kinematics)
@@ -205,7 +209,7 @@ class Model:
     @property
     def dim(self) -> int:
         """2 or 3, the mesh's."""
-        return int(self.mesh.points.shape[1])
+        return self.mesh.dim
 
     @cached_property
     def dofs(self) -> Dofs:
@@ -226,7 +230,7 @@ class Model:
     def histories(self) -> tuple[History, ...]:
         """The different histories of everything prescribed, the ramp first."""
         given = (*self.supports, *self.loads, *self.equations, *self.rigid, *self.contacts, *self.rotations)
-        amplitudes = [item.amplitude for item in (*given, *self.preloads, *self.couplings)]
+        amplitudes = [item.amplitude for item in (*given, *self.preloads, *self.couplings, *self.penetrations)]
         friction = [contact.friction_amplitude for contact in self.contacts]
         of_rigid = (history for body in self.referenced for history in body.amplitudes.values())
         others = (history for item in self.physics for history in item.amplitudes)
@@ -234,9 +238,9 @@ class Model:
 
     @cached_property
     def ends(self) -> tuple[float, ...]:
-        """Time at the end of each load step: those of ``solve``, and where the way matters (friction, large displacements,
-        materials that are not linear) the corners of all histories, which a step across would never see."""
-        rubs = any(contact.frictional for contact in self.contacts)
+        """Time at the end of each load step: those of ``solve``, and where the way matters (friction, fluids, large
+        displacements, materials that are not linear) the corners of all histories, which a step across would never see."""
+        rubs = any(contact.frictional for contact in self.contacts) or bool(self.penetrations)
         if not (rubs or self.finite) and all(material.constant for material in self.materials.values()):
             return with_corners(self.solve.ends, self.locking)
         return with_corners(self.solve.ends, (*self.histories, *self.locking))
@@ -276,7 +280,8 @@ class Model:
     def _surfaces(self, contact: Contact, contactor: Names, target: Names) -> Sides:
         if self.finite and contact.kind != "tied":
             return moving_sides(self.mesh, contactor, target)
-        return find_sides(self.mesh, contactor, target, self._moved)
+        moved = largest_prescribed(self.supports, self.referenced, self.holds)
+        return find_sides(self.mesh, contactor, target, moved)
 
     def _decided(self, contact: Contact) -> Contact:
         """With contactor and target, where the user leaves them to abut."""
@@ -286,15 +291,6 @@ class Model:
             return contact.with_choice(0, SAME)
         surfaces = self._surfaces(contact, contact.first, contact.second)
         return decided(contact, measured(self.mesh, self.materials, self._held, surfaces), self.finite)
-
-    @property
-    def _moved(self) -> float:
-        """The largest displacement that is prescribed as a number."""
-        supports = [(getattr(s, name), s.amplitude) for s in self.supports for name in (*COMPONENTS, "normal")]
-        rigid = [(getattr(body, name), body.history(name)) for body in self.referenced for name in COMPONENTS]
-        held = [(value, hold.amplitude) for hold in self.holds for value in hold.components.values() if value != STAY]
-        values = [(v, 1.0 if history is None else history.largest) for v, history in (*supports, *rigid, *held)]
-        return max((abs(float(v)) * f for v, f in values if v is not None and not callable(v)), default=0.0)
 
     def temperatures(self, time: float) -> dict[str, float]:
         """Change of temperature of each solid body as a whole, which follows the ramp (degrees)."""

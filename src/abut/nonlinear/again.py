@@ -8,8 +8,10 @@ import numpy as np
 
 from abut.linear.solver import LinearSolver, Prepared
 from abut.linear.static_condensation import CondensedProblem
+from abut.nonlinear.active_set import solve_step
+from abut.nonlinear.attempt import Attempt
 from abut.nonlinear.iteration import Increment
-from abut.nonlinear.load_step import Attempt, load_step
+from abut.nonlinear.load_step import load_step
 from abut.nonlinear.newton import Task
 from abut.nonlinear.settings import Settings
 from abut.problem.problem import ContactProblem, Problem
@@ -45,7 +47,9 @@ class Again:
         """The end of a step (without friction, since it begins with its own end) with these forces. Raises
         SingularModelError and NotConverged."""
         increment = Increment(attempt.number, attempt.state.largest, self.settings)
-        task = Task(_with(self.problem, imposed), attempt.state, self.solver, increment, self.limit, _unseen)
+        task = Task(
+            _with(self.problem, imposed), attempt.state, self.solver, increment, self.limit, _unseen, solve_step
+        )
         return load_step(task, attempt.time, self.prepared)
 
 

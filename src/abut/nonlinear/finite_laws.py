@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from abut.contact.laws import ConstraintFunction, Law, LawState
 from abut.contact.smooth_friction import SmoothCoulomb
-from abut.nonlinear.friction_newton import friction_laws, next_status
+from abut.nonlinear.friction_laws import friction_laws, next_status
 from abut.nonlinear.iteration import Increment
 from abut.nonlinear.settings import NOTHING
 from abut.problem.current import bare

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from abut.errors import SingularModelError
 from abut.linear.solver import Prepared
-from abut.nonlinear.friction_newton import Course, Status, newton
+from abut.nonlinear.friction_laws import Status
+from abut.nonlinear.friction_newton import Course, newton
 from abut.nonlinear.friction_search import search
 from abut.nonlinear.iteration import Found, Increment
 from abut.problem.linearised import Linearised

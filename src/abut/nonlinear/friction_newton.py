@@ -1,4 +1,4 @@
-"""Semi-smooth Newton on contact and slip together, and the status that the laws ask for."""
+"""Semi-smooth Newton on contact and slip together."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.contact.laws import Complementarity, Coulomb, Tied
 from abut.linear.solver import Prepared
 from abut.nonlinear.friction_foresight import advanced, foreseen
+from abut.nonlinear.friction_laws import Status, friction_laws, next_status
 from abut.nonlinear.iteration import (
     Found,
     Increment,
@@ -19,15 +19,10 @@ from abut.nonlinear.iteration import (
     points,
     report,
 )
-from abut.nonlinear.settings import NOTHING
-from abut.problem.laws import LawRows, at_multipliers, giving
-from abut.problem.linearised import Linearised
-from abut.problem.pair import Pair
 from abut.solution import Iteration
-from abut.solution.state import CLOSED, OPEN, SLIPPING, State
+from abut.solution.state import State
 
 Vector = NDArray[np.float64]
-Status = NDArray[np.int8]
 
 
 @dataclass
@@ -114,72 +109,3 @@ def newton(course: Course, first: State, limit: int) -> Found | None:
             foreseen_other = not np.array_equal(status, wanted)
             state = state.with_status(status)
     return None
-
-
-def friction_laws(system: Linearised, state: State) -> list[LawRows]:
-    """The laws of all pairs with the status as it is."""
-    parts = (system.gap(state), state.multipliers, state.closed, state.slipping)
-    return [
-        giving(
-            pair,
-            at_multipliers(pair, _law(pair, system), gap, multipliers, closed, slipping if pair.frictional else None),
-        )
-        for pair, gap, multipliers, closed, slipping in zip(system.pairs, *map(system.split, parts))
-    ]
-
-
-def _law(pair: Pair, system: Linearised) -> Tied | Coulomb | Complementarity:
-    if pair.tied:
-        return Tied()
-    if not pair.frictional:
-        return Complementarity(pair.stiffness)
-    return coulomb(pair, system)
-
-
-def coulomb(pair: Pair, system: Linearised) -> Coulomb:
-    """The law of a pair with friction."""
-    return Coulomb(pair.stiffness, pair.friction(system.factors))
-
-
-def next_status(system: Linearised, state: State, increment: Increment, gap: Vector | None = None) -> Status:
-    """The status that the laws ask for, theory (R5), (R6), of each multiplier. What differs by rounding alone stays.
-    gap: (n,) weighted gaps and slips to judge by; left out: those of the state."""
-    if not len(state.multipliers):
-        return state.status
-    pressed = np.concatenate([np.zeros(0), *(p[pair.normal] for pair, p in _contacts(system, state.multipliers))])
-    reference = float(np.abs(pressed).max(initial=increment.largest.pressure))
-    small = increment.settings.newton.balanced * max(reference, NOTHING)
-    gap = system.gap(state) if gap is None else gap
-    gaps, multipliers, before = (system.split(part) for part in (gap, state.multipliers, state.status))
-    return system.join(
-        [
-            np.full(len(pair), CLOSED) if pair.two_way else _wanted(pair, system.factors, gap, part, status, small)
-            for pair, gap, part, status in zip(system.pairs, gaps, multipliers, before)
-        ]
-    )
-
-
-def _contacts(system: Linearised, values: Vector) -> list[tuple[Pair, Vector]]:
-    return [(pair, part) for pair, part in zip(system.pairs, system.split(values)) if not pair.tied]
-
-
-def _wanted(pair: Pair, factors: Vector, gap: Vector, multipliers: Vector, status: Status, small: float) -> Status:
-    normal, earlier = pair.normal, status[pair.normal]
-    depth = -gap[normal] / pair.scale[normal]
-    pushed = multipliers[normal] + depth
-    closed = np.where(earlier != OPEN, pushed >= -small, pushed > small)
-    result = np.where(closed, CLOSED, OPEN)
-    if not pair.frictional:
-        return result
-    limit = pair.friction(factors)
-    if not limit.rough:
-        drag = pair.tangential_traction(multipliers)
-        trial = pair.tangential_traction(multipliers - gap / pair.scale)
-        size = np.linalg.norm(trial, axis=1)
-        excess = size - limit.at(np.maximum(pushed, 0.0))[0]
-        back = (
-            np.einsum("kd,kd->k", drag, trial) < -small * size
-        )  # slips the way it is pulled: it sticks before it slips back
-        slips = np.where(earlier == SLIPPING, (excess >= -small) & ~back, excess > small)
-        result = np.where(closed & ((slips & (size > small)) | limit.none), SLIPPING, result)
-    return np.asarray(pair.of_functions(result))

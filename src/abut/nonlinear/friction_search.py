@@ -8,8 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from abut.errors import SingularModelError
-from abut.nonlinear.friction_interior import Manner, Programme, begin, iterate, near
-from abut.nonlinear.friction_newton import Course, newton, next_status
+from abut.nonlinear.friction_laws import next_status
+from abut.nonlinear.friction_newton import Course, newton
+from abut.nonlinear.interior_point import Manner, Programme, begin, iterate, near
 from abut.nonlinear.iteration import Found, largest_pressure, points
 from abut.nonlinear.settings import Settings
 from abut.solution.state import CLOSED, OPEN, State
@@ -20,8 +21,8 @@ def search(course: Course, state: State, limit: int) -> Found | None:
 
     Newton's method ends it as soon as interior points tell the status of most multipliers."""
     interior = course.increment.settings.interior
-    bold = Manner(0.95, interior.central)
-    for manner in (bold, Manner(0.7, 50.0 * interior.central), replace(bold, dilates=True)):
+    bold = Manner(0.95, interior.central, least=interior.central**2)
+    for manner in (bold, replace(bold, boundary=0.7, central=50.0 * interior.central), replace(bold, dilates=True)):
         try:
             with np.errstate(all="ignore"):  # what is no number ends it
                 found = _interior(course, state, manner, limit)

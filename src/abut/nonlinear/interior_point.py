@@ -1,195 +1,388 @@
-"""The contact problem as a convex quadratic programme: Mehrotra's predictor and corrector on displacements, pressures, gaps.
+"""Contact by interior points, with friction or without: pressures and gaps positive, tractions and slips inside their cones.
 
-Each row gets a compliance, the ratio of its gap and pressure; no row is ever released, so that intermediate active sets do
-not matter. The few rows that remain undecided in the end are resolved exactly by ``abut.nonlinear.search``.
-"""
+Each function of a contact has a pressure and a gap whose product goes to zero, theory (V17) to (V20); no row is ever
+released, so that intermediate active sets do not matter. With friction it has two vectors in second-order cones, too: the
+bound and the traction (mu p, t), and beside it (|v|, v), both of which the solution puts on the boundary where it slips,
+and the second to zero where it sticks: theory (R8). Without friction there are no such cones, and the problem is convex."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
-import scipy.linalg
+import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.linear.solver import Prepared, Solve
+from abut.nonlinear.cones import Scaling, depth, longest, mirrored, product, quotient, scaling, times
+from abut.nonlinear.repeated_solutions import solutions
 from abut.nonlinear.settings import NOTHING, Settings
-from abut.problem.laws import softened
-from abut.problem.linearised import Rows
+from abut.nonlinear.softness import softness
+from abut.problem.laws import LawRows
+from abut.problem.pair import Pair
 from abut.solution.state import State
 
 Vector = NDArray[np.float64]
+Numbers = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
-class Interior:
-    """state: displacements and pressures, the latter positive but for tied rows; slack: (n,) gaps, positive, that
-    pressures are to be complementary to (zero on tied rows); opening, closing: (n,) d g / g and d p / p of the last
-    predictor."""
+class Manner:
+    """How bold steps are. boundary: share of the way to it; central: what the smallest product keeps of the mean of all;
+    dilates: begins with surfaces that part as they slip, which makes the problem a convex one; least: share of the mean
+    product that is aimed at, at least; correctors: of Gondzio's at most, for products of pressures and gaps alone."""
 
-    state: State
-    slack: Vector
-    opening: Vector
-    closing: Vector
-
-    @property
-    def active(self) -> NDArray[np.bool_]:
-        """Rows on which the gap goes faster than the pressure, theory (V20)."""
-        return self.closing > self.opening
+    boundary: float
+    central: float
+    dilates: bool = False
+    least: float = 0.0
+    correctors: int = 0
 
 
 @dataclass(frozen=True)
 class Programme:
-    """What stays the same over the iterations of a load step. prepared: the linear solver; scale: (n,) gap per pressure;
-    tied: (n,) rows that are closed whatever happens; softness: of the bodies over that of their facets; settings:
-    thresholds."""
+    """A load step on all functions of all pairs that are not tied. normal: (k,) their pressures' numbers; scale: (k,) gap
+    per pressure; rubs: (r,) functions with friction; along: (r, d - 1) their tractions' numbers, -1 where there is none;
+    idle: numbers of tractions without friction."""
 
-    prepared: Prepared
+    solver: Prepared
+    normal: Numbers
     scale: Vector
-    tied: NDArray[np.bool_]
+    rubs: Numbers
+    along: Numbers
+    idle: Numbers
     softness: float
     settings: Settings
 
-    def undecided(self, here: Interior) -> NDArray[np.bool_]:
-        """Rows that are neither closing nor opening."""
-        return np.abs(here.closing + 0.5) < self.settings.interior.undecided
-
-    def mean(self, pressure: Vector, slack: Vector) -> float:
-        """Mean product of gaps (as pressures) and pressures, theory (V17)."""
-        free = ~self.tied
-        return float((slack[free] * pressure[free] / self.scale[free]).mean())
-
-    def central(self, pressure: Vector, slack: Vector) -> bool:
-        """Whether no product is far smaller than the mean of all, which makes the steps after it short."""
-        free = ~self.tied
-        product = slack[free] * pressure[free] / self.scale[free]
-        return bool(product.min() >= self.settings.interior.central * product.mean())
-
-    def rows(self, state: State, softness: Vector, shift: Vector) -> Rows:
-        """The rows of theory (V18)."""
-        system = self.prepared.system
-        parts = zip(*map(system.split, (system.gap(state), shift, softness, state.closed)))
-        return system.rows([softened(*part) for part in parts])
-
-    def solver(self, state: State, softness: Vector) -> Solve:
-        """Solutions with rows of that softness, as often as wanted: (residual of equilibrium, shift) -> (du, dp)."""
-        rows = self.rows(state, softness, np.zeros_like(softness))
-        factors = self.prepared.factorise(rows)
-        if factors is None:
-            return self._iterations(rows, state)
-        return lambda residual, shift: factors(residual, rows.residual + shift)
-
-    def _iterations(self, rows: Rows, state: State) -> Solve:
-        """The same by an iterative solver, each solution from the one before on."""
-        system = self.prepared.system
-        du, dp = np.zeros_like(state.unknowns), np.zeros_like(state.multipliers)
-
-        def solve(residual: Vector, shift: Vector) -> tuple[Vector, Vector]:
-            nonlocal du, dp
-            left, of_law = residual, rows.residual + shift
-            if du.any() or dp.any():
-                left = residual + system.stiffness @ du - system.operator.T @ dp
-                of_law = of_law + rows.by_displacement @ du + rows.by_pressure @ dp
-            more = self.prepared.solve(
-                replace(rows, residual=of_law), left, state.multipliers, self.settings.accuracy.rough
-            )
-            du, dp = du + more[0], dp + more[1]
-            return du, dp
-
-        return solve
-
-    def missed(self, here: Interior) -> float:
-        """Largest difference between gaps and slacks, as a pressure."""
-        return float(np.abs((self.prepared.system.gap(here.state) - here.slack) / self.scale).max())
-
-    def unbalanced(self, state: State) -> Vector:
-        return self.prepared.system.unbalanced(state)
-
-
-def softness(solver: Prepared) -> float:
-    """How far the bodies give way under a uniform pressure, over how far their facets alone would, theory (V16). Rigid
-    motions are held by springs at a few displacements, and their share is taken out."""
-    system = solver.system
-    root = np.sqrt(system.scale)
-    one = np.ones(len(root))
-    moved = system.operator @ solver.respond(np.asarray(system.operator.T @ one), _springs(solver))
-    if system.compliance is not None:
-        moved = moved + system.compliance @ one
-    if system.motions.shape[1]:
-        rigid = np.asarray(system.operator @ system.motions) / root[:, None]
-        moved = moved - root * (rigid @ np.linalg.lstsq(rigid, moved / root, rcond=None)[0])
-    return max(1.0, float(np.linalg.norm(moved / root) / np.linalg.norm(root)))
-
-
-def _springs(solver: Prepared) -> Vector:
-    """Springs (n_free,) on as many displacements as hold the rigid motions, as stiff as the bodies there."""
-    motions = solver.system.motions
-    springs = np.zeros(len(motions))
-    if motions.shape[1]:
-        pivots = scipy.linalg.qr(motions.T, mode="r", pivoting=True)[1][: motions.shape[1]]
-        springs[pivots] = solver.system.unit
-    return springs
-
-
-def begin(programme: Programme, state: State) -> Interior:
-    """The starting point, theory (V17): one solution with softness everywhere."""
-    free, soft = ~programme.tied, np.where(programme.tied, 0.0, programme.softness * programme.scale)
-    solve = programme.solver(state, soft)
-    du, dp = solve(programme.unbalanced(state), -soft * state.multipliers)
-    pressure = state.multipliers + dp
-    size = max(float(np.abs(pressure[free]).mean()), NOTHING)
-    pressure = np.where(free, np.maximum(pressure, 0.0) + size, pressure)
-    start = replace(state, unknowns=state.unknowns + du, multipliers=pressure)
-    return Interior(start, soft * size, np.zeros(len(soft)), np.zeros(len(soft)))
-
-
-def iterate(programme: Programme, here: Interior) -> Interior:
-    """One iteration, theory (V18), (V19), with Gondzio's correctors."""
-    settings = programme.settings.interior
-    free, scale, p, g = ~programme.tied, programme.scale, here.state.multipliers, here.slack
-    inverse = np.where(free, 1.0 / np.where(free, p, 1.0), 0.0)
-    solve = programme.solver(here.state, g * inverse)
-    residual, mean = programme.unbalanced(here.state), programme.mean(p, g)
-
-    def direction(product: Vector) -> tuple[Vector, Vector, Vector]:
-        """The step to gaps times pressures that are ``product`` but for the product of their steps."""
-        du, dp = solve(residual, product * inverse)
-        return du, dp, np.where(free, (product - g * p - g * dp) * inverse, 0.0)
-
-    def length_of(dp: Vector, dg: Vector) -> float:
-        return min(1.0, _longest(p, dp, free), _longest(g, dg, free))
-
-    _, closing, opening = direction(np.zeros_like(p))
-    length = length_of(closing, opening)
-    foreseen = programme.mean(p + length * closing, g + length * opening)
-    centring = (max(foreseen, 0.0) / max(mean, NOTHING)) ** 3
-    product = centring * mean * scale - closing * opening
-    du, dp, dg = direction(product)
-    for _ in range(2 if programme.prepared.exact else 0):
-        length = length_of(dp, dg)
-        aim = min(1.0, length + settings.farther)
-        reached, wanted = (p + aim * dp) * (g + aim * dg), centring * mean * scale
-        change = np.maximum(
-            np.clip(reached, settings.worth * wanted, wanted / settings.worth) - reached, -wanted / settings.worth
+    @classmethod
+    def of(cls, solver: Prepared, settings: Settings) -> Programme:
+        system, first, normal, along = solver.system, 0, [], []
+        width = max((pair.index.shape[1] for pair in system.pairs if pair.frictional), default=1) - 1
+        for pair in system.pairs:
+            if not pair.two_way:
+                beside = np.full((len(pair.space), width), -1)
+                if pair.frictional:
+                    beside = np.where(pair.index[:, 1:] >= 0, pair.index[:, 1:] + first, -1)
+                normal.append(first + np.arange(len(pair.space)))
+                along.append(beside)
+            first += len(pair)
+        numbers, tangents = np.concatenate(normal), np.concatenate(along)
+        programme = cls(
+            solver,
+            numbers,
+            system.scale[numbers],
+            np.arange(len(numbers)),
+            tangents,
+            numbers[:0],
+            softness(solver),
+            settings,
         )
-        following = product + np.where(free, change, 0.0)
-        corrected = direction(following)
-        if length_of(*corrected[1:]) < length + settings.worth * settings.farther:
+        holds = programme.bound(np.ones(len(numbers)))[0] > 0.0
+        rubs = np.flatnonzero(holds & (tangents >= 0).any(axis=1))
+        idle = tangents[~holds]
+        return replace(programme, rubs=rubs, along=tangents[rubs], idle=idle[idle >= 0])
+
+    def bound(self, pressure: Vector) -> tuple[Vector, Vector]:
+        """Of the tractions of ``rubs`` under pressures (k,) of all functions, and its derivative."""
+        system, first, parts = self.solver.system, 0, []
+        for pair in system.pairs:
+            if not pair.two_way:
+                own = pressure[first : first + len(pair.space)]
+                parts.append(_bound(pair, system.factors, own, self.settings.interior.steepest))
+                first += len(pair.space)
+        bound, slope = (np.concatenate(values) for values in zip(*parts))
+        return bound[self.rubs], slope[self.rubs]
+
+    def tangential(self, values: Vector) -> Vector:
+        """Values (n,) of all multipliers along the tangents of ``rubs``, (r, d - 1); zero where there is none."""
+        return np.where(self.along >= 0, values[np.maximum(self.along, 0)], 0.0)
+
+    def active(self, here: Interior) -> NDArray[np.bool_]:
+        """(n,) multipliers whose gap goes faster than the pressure, theory (V20), and those that are closed in any case."""
+        result = self.solver.system.tied
+        result[self.normal] = here.closing > here.opening
+        return result
+
+    def undecided(self, here: Interior) -> NDArray[np.bool_]:
+        """(n,) multipliers that are neither closing nor opening."""
+        result = np.zeros(len(here.state.multipliers), dtype=bool)
+        result[self.normal] = np.abs(here.closing + 0.5) < self.settings.interior.undecided
+        return result
+
+
+def _bound(pair: Pair, factors: Vector, pressure: Vector, steepest: float) -> tuple[Vector, Vector]:
+    if not pair.frictional:
+        return np.zeros(len(pressure)), np.zeros(len(pressure))
+    limit = pair.friction(factors)
+    return (steepest * pressure, np.full(len(pressure), steepest)) if limit.rough else limit.at(pressure)
+
+
+@dataclass(frozen=True)
+class Interior:
+    """state: displacements and multipliers, pressures positive and tractions within their bounds; gap: (k,) positive, as
+    pressures, which gaps are to be; slip: (r, d) inside its cone, as pressures, its last components what slips are to be;
+    dilatancy: gaps that slip opens, 1 to 0; length: of the last step; opening, closing: (k,) d g / g and d p / p of the last
+    predictor."""
+
+    state: State
+    gap: Vector
+    slip: Vector
+    dilatancy: float
+    opening: Vector
+    closing: Vector
+    length: float = 1.0
+
+
+@dataclass(frozen=True)
+class _Near:
+    """An ``Interior`` point and what follows from it. gaps, slips: by displacements, as pressures."""
+
+    programme: Programme
+    here: Interior
+    gaps: Vector
+    slips: Vector
+
+    @cached_property
+    def pressure(self) -> Vector:
+        return self.here.state.multipliers[self.programme.normal]
+
+    @cached_property
+    def traction(self) -> Vector:
+        """(r, d): bound, and traction."""
+        bound, _ = self.programme.bound(self.pressure)
+        return np.column_stack([bound, self.programme.tangential(self.here.state.multipliers)])
+
+    @cached_property
+    def slope(self) -> Vector:
+        return self.programme.bound(self.pressure)[1]
+
+    @cached_property
+    def scaled(self) -> Scaling:
+        return scaling(self.here.slip, self.traction)
+
+    @cached_property
+    def mean(self) -> float:
+        """Mean product."""
+        products = [self.here.gap * self.pressure, np.einsum("rd,rd->r", self.here.slip, self.traction)]
+        return float(np.concatenate(products).mean())
+
+    @cached_property
+    def soft(self) -> Vector:
+        """(r, d, d) slip by traction, W^2."""
+        return np.einsum("rij,rjk->rik", self.scaled.matrix, self.scaled.matrix)
+
+    @cached_property
+    def unbalanced(self) -> Vector:
+        return self.programme.solver.system.unbalanced(self.here.state)
+
+    @cached_property
+    def solve(self) -> Solve:
+        """Solutions with the rows here, whatever the products that are aimed at."""
+        system = self.programme.solver.system
+        rows = system.rows(_by_pairs(self.programme, np.zeros(len(self.here.state.multipliers)), _softening(self)))
+        return solutions(self.programme.solver, rows, self.here.state, self.programme.settings.accuracy)
+
+    @property
+    def missed(self) -> float:
+        """Largest difference between what gaps and slips are and what they are to be."""
+        opened = self.here.gap.copy()
+        opened[self.programme.rubs] += self.here.dilatancy * self.slope * self.here.slip[:, 0]
+        off = [np.abs(self.gaps - opened), np.abs(self.slips - self.here.slip[:, 1:]).ravel()]
+        return float(np.concatenate(off).max(initial=0.0))
+
+
+def near(programme: Programme, here: Interior) -> _Near:
+    """Gaps and slips at a point."""
+    system = programme.solver.system
+    gap = system.gap(here.state) / system.scale
+    return _Near(programme, here, gap[programme.normal], programme.tangential(gap))
+
+
+def begin(programme: Programme, state: State, manner: Manner) -> Interior:
+    """The starting point: one solution with softness everywhere, theory (V17), tractions at most halfway to their bounds."""
+    system = programme.solver.system
+    soft = np.where(system.tied, 0.0, programme.softness * system.scale)
+    gap = system.gap(state)
+    gap[programme.idle] = 0.0
+    rows = system.rows(_by_pairs(programme, -gap - soft * state.multipliers, sp.diags(-soft, format="csr")))
+    du, dp = solutions(programme.solver, rows, state, programme.settings.accuracy)(
+        system.unbalanced(state), rows.residual
+    )
+    multipliers = state.multipliers + dp
+    size = max(float(np.abs(multipliers[programme.normal]).mean()), NOTHING)
+    pressure = np.maximum(multipliers[programme.normal], 0.0) + size
+    multipliers[programme.normal] = pressure
+    drag, (bound, _) = programme.tangential(multipliers), programme.bound(pressure)
+    length = np.linalg.norm(drag, axis=1)
+    drag *= np.minimum(1.0, 0.5 * bound / np.maximum(length, NOTHING))[:, None]
+    there = programme.along >= 0
+    multipliers[programme.along[there]] = drag[there]
+    multipliers[programme.idle] = 0.0
+    traction = np.column_stack([bound, drag])
+    product_of_both = programme.softness * size**2
+    slip = mirrored(traction) * (product_of_both / depth(traction))[:, None]
+    start = replace(state, unknowns=state.unknowns + du, multipliers=multipliers)
+    gaps, none = np.full(len(pressure), programme.softness * size), np.zeros(len(pressure))
+    return Interior(start, gaps, slip, float(manner.dilates), none, none)
+
+
+@dataclass(frozen=True)
+class _Step:
+    """What one whole step changes: of unknowns and multipliers, and of each quantity."""
+
+    unknowns: Vector
+    multipliers: Vector
+    pressure: Vector
+    gap: Vector
+    traction: Vector
+    slip: Vector
+
+    def length(self, at: _Near) -> float:
+        """How many of it until the boundary."""
+        cones = longest(at.traction, self.traction), longest(at.here.slip, self.slip)
+        return min(_positive(at.pressure, self.pressure), _positive(at.here.gap, self.gap), *cones)
+
+
+def iterate(at: _Near, manner: Manner) -> Interior:
+    """One iteration: Mehrotra's predictor and corrector, with the coupling of bound and pressure, and Gondzio's."""
+    here, mean = at.here, at.mean
+    first = _direction(at, np.zeros_like(at.pressure), np.zeros_like(here.slip))
+    length = min(1.0, first.length(at))
+    products = [
+        (here.gap + length * first.gap) * (at.pressure + length * first.pressure),
+        np.einsum("rd,rd->r", here.slip + length * first.slip, at.traction + length * first.traction),
+    ]
+    foreseen = max(float(np.concatenate(products).mean()), 0.0)
+    aim = float(np.clip((foreseen / max(mean, NOTHING)) ** 3, manner.least, 1.0)) * mean
+    of_cones = np.zeros_like(here.slip)
+    of_cones[:, 0] = aim
+    if len(of_cones):
+        of_cones -= product(times(at.scaled.inverse, first.slip), times(at.scaled.matrix, first.traction))
+    step = _bolder(at, aim - first.gap * first.pressure, of_cones, aim, manner.correctors)
+    length = min(1.0, manner.boundary * step.length(at))
+    for _ in range(4 * at.programme.settings.newton.patience):
+        if _central(at, step, length, manner.central):
             break
-        product, (du, dp, dg) = following, corrected
-    length = min(1.0, settings.boundary * _longest(p, dp, free), settings.boundary * _longest(g, dg, free))
-    shorter = length * settings.shorter ** np.arange(4 * programme.settings.newton.patience)
-    length = next((t for t in shorter if programme.central(p + t * dp, g + t * dg)), length)
+        length *= at.programme.settings.interior.shorter
     state = replace(
-        here.state, unknowns=here.state.unknowns + length * du, multipliers=here.state.multipliers + length * dp
+        here.state,
+        unknowns=here.state.unknowns + length * step.unknowns,
+        multipliers=here.state.multipliers + length * step.multipliers,
     )
-    share = np.where(free, g, 1.0)
     return Interior(
-        state, g + length * dg, np.where(free, opening / share, -1.0), np.where(free, closing * inverse, 0.0)
-    )
+        state, here.gap + length * step.gap, here.slip + length * step.slip, here.dilatancy,
+        first.gap / here.gap, first.pressure / at.pressure, length,
+    )  # fmt: skip
 
 
-def _longest(values: Vector, steps: Vector, free: NDArray[np.bool_]) -> float:
-    """How many steps it takes until the first of the positive values is zero."""
-    falling = free & (steps < 0.0)
+def _bolder(at: _Near, products: Vector, of_cones: Vector, aim: float, correctors: int) -> _Step:
+    """The step to products, and those of Gondzio's correctors that make it longer: outliers are led back towards ``aim``."""
+    settings, gap, pressure = at.programme.settings.interior, at.here.gap, at.pressure
+    step = _direction(at, products, of_cones)
+    for _ in range(correctors):
+        length = min(1.0, step.length(at))
+        far = min(1.0, length + settings.farther)
+        reached = (pressure + far * step.pressure) * (gap + far * step.gap)
+        change = np.clip(reached, settings.worth * aim, aim / settings.worth) - reached
+        following = products + np.maximum(change, -aim / settings.worth)
+        corrected = _direction(at, following, of_cones)
+        if min(1.0, corrected.length(at)) < length + settings.worth * settings.farther:
+            break
+        products, step = following, corrected
+    return step
+
+
+def _central(at: _Near, step: _Step, length: float, share: float) -> bool:
+    """Whether all stay inside after a step of some length, and no product is far smaller than the mean of all."""
+    pressure, slip = at.pressure + length * step.pressure, at.here.slip + length * step.slip
+    traction = at.traction + length * step.traction
+    traction[:, 0] = at.programme.bound(pressure)[0]  # which need not be linear
+    inside = depth(traction)
+    if len(inside) and (inside.min() <= 0.0 or depth(slip).min() <= 0.0):
+        return False
+    products = np.concatenate([(at.here.gap + length * step.gap) * pressure, np.sqrt(depth(slip) * inside)])
+    return bool(products.min() >= share * products.mean())
+
+
+def _direction(at: _Near, of_gaps: Vector, of_cones: Vector) -> _Step:
+    """The step to products that are those told, but for the products of the steps' own parts."""
+    here = at.here
+    shift = of_gaps / at.pressure
+    slip = -here.slip
+    if len(here.slip):
+        slip = slip + times(at.scaled.matrix, quotient(at.scaled.middle, of_cones))
+    du, dp = at.solve(at.unbalanced, _left(at, shift, here.slip + slip))
+    pressure = dp[at.programme.normal]
+    traction = np.column_stack([at.slope * pressure[at.programme.rubs], at.programme.tangential(dp)])
+    gap = shift - here.gap - here.gap / at.pressure * pressure
+    return _Step(du, dp, pressure, gap, traction, slip - times(at.soft, traction))
+
+
+def _left(at: _Near, shift: Vector, slip: Vector) -> Vector:
+    """Residual of gap + d gap = shift - (g / p) dp and slip + d slip = that told - W^2 (mu dp, dt), (n,)."""
+    programme, here, system = at.programme, at.here, at.programme.solver.system
+    rubbed = programme.scale[programme.rubs]
+    residual, wanted = -system.gap(here.state), shift.copy()
+    for a in range(programme.along.shape[1]):
+        present = programme.along[:, a] >= 0
+        residual[programme.along[present, a]] += (rubbed * slip[:, 1 + a])[present]
+    if len(programme.rubs):
+        wanted[programme.rubs] += here.dilatancy * at.slope * slip[:, 0]
+    residual[programme.normal] += programme.scale * wanted
+    residual[programme.idle] = (-system.scale * here.state.multipliers)[programme.idle]
+    return residual
+
+
+def _softening(at: _Near) -> sp.csr_matrix:
+    """The derivative of these rows by the multipliers, (n, n)."""
+    programme, here, soft = at.programme, at.here, at.soft
+    n, scale = len(here.state.multipliers), programme.scale
+    at_rubs, rubbed = programme.normal[programme.rubs], scale[programme.rubs]
+    entries = [(programme.normal, programme.normal, -scale * here.gap / at.pressure)]
+    there = programme.along >= 0
+    for a in range(programme.along.shape[1]):
+        row, present = programme.along[:, a], there[:, a]
+        by_bound = -rubbed * soft[:, 1 + a, 0] * at.slope
+        entries.append((row[present], at_rubs[present], by_bound[present]))
+        entries.append((at_rubs[present], row[present], here.dilatancy * by_bound[present]))
+        for b in range(programme.along.shape[1]):
+            both = present & there[:, b]
+            entries.append((row[both], programme.along[both, b], (-rubbed * soft[:, 1 + a, 1 + b])[both]))
+    entries.append((at_rubs, at_rubs, -here.dilatancy * rubbed * soft[:, 0, 0] * at.slope**2))
+    entries.append((programme.idle, programme.idle, -programme.solver.system.scale[programme.idle]))
+    row, column, value = (np.concatenate(parts) for parts in zip(*entries))
+    return sp.csr_matrix((value, (row, column)), shape=(n, n))
+
+
+def _by_pairs(programme: Programme, residual: Vector, by_pressure: sp.csr_matrix) -> list[LawRows]:
+    """Rows of all multipliers that see minus their own gap or slip; those ``idle`` see their own traction alone."""
+    system, laws, first = programme.solver.system, [], 0
+    idle = np.zeros(len(residual), dtype=bool)
+    idle[programme.idle] = True
+    for pair in system.pairs:
+        here = slice(first, first := first + len(pair))
+        unused = idle[here]
+        laws.append(
+            LawRows(
+                residual=residual[here],
+                closed=np.ones(len(pair), dtype=bool),
+                by_gap=_diagonal(np.where(unused, 0.0, -1.0)),
+                by_pressure=by_pressure[here, here],
+                at_points=False,
+                decoupled=unused,
+                symmetric=not pair.frictional,
+            )
+        )
+    return laws
+
+
+def _diagonal(values: Vector) -> sp.csr_matrix:
+    matrix = sp.diags(values, format="csr")
+    matrix.eliminate_zeros()
+    return matrix
+
+
+def _positive(values: Vector, steps: Vector) -> float:
+    falling = steps < 0.0
     return float((values[falling] / -steps[falling]).min(initial=np.inf))

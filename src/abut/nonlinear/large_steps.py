@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from abut.linear.solver import LinearSolver
+from abut.nonlinear.attempt import Attempt
 from abut.nonlinear.hanging import hanging
 from abut.nonlinear.holding import lifted, overcome
-from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.march import Begin, Control
 from abut.nonlinear.one_step import Setting
 from abut.nonlinear.pace import Pace
@@ -70,9 +70,11 @@ class LargeSteps:
 
 
 def _attempts(setting: Setting, before: State, guess: State | None, time: float, careful: bool) -> Sequence[Attempt]:
-    """One at the step to ``time``; after a step that ended under a drag its parts under a drag as well."""
-    if not drag_of(before).any():
-        return [setting.attempted(before, guess, time, careful=careful)]
+    """One at the step to ``time``. After a step that ended under a drag, where that fails, its parts under a drag as well:
+    what a body lies on may hardly resist a motion, and loads bring it back all the same, as a disc in a bowl."""
+    plain = setting.attempted(before, guess, time, careful=careful)
+    if plain.converged or not drag_of(before).any():
+        return [plain]
     return stabilised(setting, before, time).attempts
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,33 +10,12 @@ from numpy.typing import NDArray
 from abut.contact.coupling import surface_degree
 from abut.contact.pressure_space import DUAL_P1
 from abut.linear.solver import Prepared
+from abut.nonlinear.attempt import Attempt as Attempt
 from abut.nonlinear.iteration import Found, largest_so_far
 from abut.nonlinear.newton import Task, newton
 from abut.problem.balance import Balance
 from abut.problem.problem import Problem
 from abut.solution import Iteration
-from abut.solution.state import State
-
-
-@dataclass(frozen=True)
-class Attempt:
-    """The end of a load step. state: in all free displacements, with history and ``largest`` if it ``converged``; inside:
-    (n,) bool, the multipliers in contact that tell where the functions of "dual-P1" are the ordinary ones; cycling: (n,)
-    bool, multipliers that keep changing; time: at which it was to end; reason: why it did not converge, where more can be
-    said; whole: it ends where a step was asked to, not in between; between: as in ``Found``; balance: the problem at the
-    state, None where that is not known."""
-
-    number: int
-    state: State
-    converged: bool
-    iterations: tuple[Iteration, ...]
-    cycling: NDArray[np.bool_]
-    inside: NDArray[np.bool_]
-    time: float
-    reason: str = ""
-    whole: bool = True
-    between: NDArray[np.uint8] | None = None
-    balance: Balance | None = None
 
 
 def load_step(task: Task, time: float, prepared: Prepared) -> Attempt:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 from abut.linear.solver import LinearSolver, NotConverged
-from abut.nonlinear.load_step import Attempt
+from abut.nonlinear.attempt import Attempt
 from abut.nonlinear.pace import Pace
 from abut.nonlinear.settings import DEFAULT, Settings
 from abut.problem.onset import Onset

@@ -6,11 +6,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 
 from abut.linear.solver import LinearSolver, Prepared
-from abut.nonlinear.active_set import solve_step
 from abut.nonlinear.exact import Aim
 from abut.nonlinear.iteration import Found, Increment, largest_force
 from abut.problem.frame import Frame
@@ -20,9 +20,19 @@ from abut.solution import Iteration
 from abut.solution.state import State
 
 
+class Search(Protocol):
+    """How the contact status of a linearised problem is found, as ``abut.nonlinear.active_set.solve_step`` does."""
+
+    def __call__(
+        self, solver: Prepared, begin: State, increment: Increment, limit: int, observe: Callable[[Iteration], None],
+        earlier: Sequence[Iteration] = (), aim: Aim = "solution", settle: bool = False,
+    ) -> Found: ...  # fmt: skip
+
+
 @dataclass(frozen=True)
 class Task:
-    """A load step to solve. before: the last converged state; limit: of iterations; observe: called with each of them."""
+    """A load step to solve. before: the last converged state; limit: of iterations; observe: called with each of them;
+    search: for the contact status; given: a frame other than that which begins there."""
 
     problem: Problem
     before: State
@@ -30,11 +40,13 @@ class Task:
     increment: Increment
     limit: int
     observe: Callable[[Iteration], None]
+    search: Search
+    given: Frame | None = None
 
     @cached_property
     def frame(self) -> Frame:
-        """What is fixed during the step."""
-        return self.problem.frame(self.before)
+        """What is fixed during the step: ``given``, or that which begins at ``before``."""
+        return self.problem.frame(self.before) if self.given is None else self.given
 
 
 def newton(
@@ -49,11 +61,11 @@ def newton(
 
     A constant problem is linearised once: what remains is the search for the contact status. Any other one is linearised
     anew at each state that this search finds, until its forces are in balance there. earlier, aim, settle: as for
-    ``abut.nonlinear.active_set.solve_step``."""
+    ``Search``."""
     problem, solver, settings = task.problem, task.solver, task.increment.settings.newton
     system = problem.linearise(task.before, task.frame, guess)
     prepared = solver.prepare(system, previous)
-    found = solve_step(prepared, guess, task.increment, task.limit, task.observe, earlier, aim, settle)
+    found = task.search(prepared, guess, task.increment, task.limit, task.observe, earlier, aim, settle)
     error, near = np.inf, problem.constant
     while found.converged and not problem.constant:
         system = problem.linearise(task.before, task.frame, found.state)
@@ -65,7 +77,7 @@ def newton(
         if left <= 0 or not np.isfinite(error):
             return replace(found, converged=False), prepared
         prepared = solver.prepare(system, prepared)
-        found = solve_step(
+        found = task.search(
             prepared, found.state, task.increment, left, task.observe, found.iterations, aim, settle=True
         )
     return replace(found, system=system if near else None), prepared

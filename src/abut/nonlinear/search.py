@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from abut.errors import SingularModelError
 from abut.linear.solver import Prepared
 from abut.nonlinear.exact import Aim, Solved, finer, settled, solve_set
-from abut.nonlinear.interior_point import Programme, begin, iterate, softness
+from abut.nonlinear.interior_point import Manner, Programme, begin, iterate, near
 from abut.nonlinear.iteration import Found, Increment, active_laws, largest_pressure, report
 from abut.nonlinear.smooth_laws import finish_smooth
 from abut.solution import Iteration
@@ -53,30 +53,30 @@ def search(
         return finish_smooth(solver, solved.state, increment, limit, log.done, log.observe)
 
     clock = time.perf_counter()
-    programme = Programme(solver, system.scale, tied, softness(solver), settings)
+    interior = settings.interior
+    manner = Manner(interior.boundary, interior.central, correctors=2 if solver.exact else 0)
+    programme = Programme.of(solver, settings)
     if system.compliance is None:  # it took a solution
-        log.add(_row(programme, state, increment, log.next, 0, clock))
+        log.add(_row(solver, tied, state, increment, log.next, 0, clock))
     if log.full:
         return Found(state, tuple(log.done), False, ~tied, active_laws)
     clock = time.perf_counter()
-    here = begin(programme, state)
-    log.add(_row(programme, here.state, increment, log.next, 0, clock))
+    here = begin(programme, state, manner)
+    log.add(_row(solver, tied, here.state, increment, log.next, 0, clock))
     active = tied
     best, idle = (np.inf, np.inf), 0
     solved: Solved | None = None
     while not log.full:
         clock = time.perf_counter()
-        here = iterate(programme, here)
-        changed = int((here.active != active).sum())
-        active = here.active
-        log.add(_row(programme, here.state.with_closed(active), increment, log.next, changed, clock))
-        mean = programme.mean(here.state.multipliers, here.slack)
-        missed = programme.missed(here)
-        idle = 0 if mean < best[0] or missed < best[1] else idle + 1
-        best = min(mean, best[0]), min(missed, best[1])
+        here = iterate(near(programme, here), manner)
+        at, closed = near(programme, here), programme.active(here)
+        changed, active = int((closed != active).sum()), closed
+        log.add(_row(solver, tied, here.state.with_closed(active), increment, log.next, changed, clock))
+        missed = max(at.missed, float(np.abs(system.gap(here.state) / system.scale)[tied].max(initial=0.0)))
+        idle = 0 if at.mean < best[0] or missed < best[1] else idle + 1
+        best = min(at.mean, best[0]), min(missed, best[1])
         floor = (
-            idle >= settings.newton.patience
-            or mean < settings.interior.floor * largest_pressure(here.state, increment) ** 2
+            idle >= settings.newton.patience or at.mean < interior.floor * largest_pressure(here.state, increment) ** 2
         )
         if not floor and (int(programme.undecided(here).sum()) > few or changed > max(few, 2)):
             continue
@@ -119,9 +119,17 @@ def polish(
     return solved
 
 
-def _row(programme: Programme, state: State, increment: Increment, count: int, changed: int, clock: float) -> Iteration:
+def _row(
+    solver: Prepared,
+    tied: NDArray[np.bool_],
+    state: State,
+    increment: Increment,
+    count: int,
+    changed: int,
+    clock: float,
+) -> Iteration:
     """The row of the table for a state between: how far gaps and pressures are from one of them being zero."""
-    system = programme.prepared.system
-    gap = system.gap(state) / programme.scale
-    violation = np.abs(np.where(programme.tied, gap, np.minimum(gap, state.multipliers)))
+    system = solver.system
+    gap = system.gap(state) / system.scale
+    violation = np.abs(np.where(tied, gap, np.minimum(gap, state.multipliers)))
     return report(system, state, increment, count, changed, violation, time.perf_counter() - clock)

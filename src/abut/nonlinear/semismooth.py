@@ -16,7 +16,7 @@ from abut.nonlinear.drag import Drag, dragged
 from abut.nonlinear.exchange import exchanged
 from abut.nonlinear.finite_laws import Asked, barely_covered, laws_of, left_open, status_of, wanted_status
 from abut.nonlinear.forcing import forcing
-from abut.nonlinear.friction_newton import friction_laws
+from abut.nonlinear.friction_laws import friction_laws
 from abut.nonlinear.holding import not_adrift, resisting, sticking
 from abut.nonlinear.iteration import Found, Increment, advance, largest_force, largest_pressure, part_of, points
 from abut.nonlinear.line_search import shortened
@@ -248,10 +248,10 @@ def _carried(step: Step, time: float) -> State:
     while True:
         laws = laws_of(system, state, step.asked)
         there = _iterated(step, system, state, laws, step.settings.accuracy.fine, begins=True)
-        fewer = without_pulling(system, state, there, step.increment)
-        if fewer is None:
+        other = without_pulling(system, state, there, step.increment)
+        if other is None:
             return there
-        state = fewer
+        state = other
 
 
 def _balance(step: Step, state: State, guessed: bool = False) -> Trial:

@@ -87,6 +87,9 @@ class StepSettings:
     careful: int = _of(
         2, "cuts in a row", "from which on a line search shortens iterations", "test_stabilised.py",
     )  # fmt: skip
+    spreads: int = _of(
+        60, "solutions of a step", "after each of which a fluid may get on in a contact", "test_penetration.py",
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from abut.contact.smooth_friction import SmoothCoulomb
 from abut.errors import SingularModelError
 from abut.linear.solver import Prepared
 from abut.nonlinear.forcing import forcing
-from abut.nonlinear.friction_newton import coulomb, friction_laws, next_status
+from abut.nonlinear.friction_laws import coulomb, friction_laws, next_status
 from abut.nonlinear.iteration import (
     Found,
     Increment,

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from abut.nonlinear.attempt import Attempt
 from abut.nonlinear.drag import Drag, scale
 from abut.nonlinear.holding import loosely_held
-from abut.nonlinear.load_step import Attempt
 from abut.nonlinear.one_step import Setting
 from abut.nonlinear.pace import Pace
 from abut.nonlinear.settings import Settings

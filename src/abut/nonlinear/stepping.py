@@ -3,16 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
 
 from abut.linear.solver import LinearSolver, Prepared
+from abut.nonlinear.active_set import solve_step
 from abut.nonlinear.again import Again
+from abut.nonlinear.attempt import Attempt
 from abut.nonlinear.iteration import Increment
-from abut.nonlinear.load_step import Attempt, load_step
+from abut.nonlinear.load_step import load_step
 from abut.nonlinear.march import Begin, Control
 from abut.nonlinear.newton import Task
+from abut.nonlinear.one_step import UNSTEADY
 from abut.nonlinear.pace import Pace
 from abut.problem.problem import ContactProblem, Problem
 from abut.solution.state import State
+
+ABSURD = 1e6  # displacement over model size that no units explain
 
 
 class SmallSteps:
@@ -44,8 +52,35 @@ class SmallSteps:
         assert pace.end is not None
         condensed, prepared = self._ready
         increment = Increment(begin.number, begin.before.largest, self._control.settings)
-        task = Task(condensed, begin.before, self._solver, increment, self._control.limit, self._control.observe)
-        return [load_step(task, pace.end, prepared)]
+        task = Task(
+            condensed, begin.before, self._solver, increment, self._control.limit, self._control.observe, solve_step
+        )
+        return [self._sound(self._steady(task, pace.end, prepared))]
+
+    def _steady(self, task: Task, end: float, prepared: Prepared) -> Attempt:
+        """A step, solved again until a fluid is where it has got to at its end."""
+        attempt = load_step(task, end, prepared)
+        done = attempt.iterations
+        for _ in range(self._control.settings.steps.spreads if task.frame.wet else 0):
+            frame = self._problem.settled(task.before, task.frame, attempt.state) if attempt.converged else task.frame
+            if frame is task.frame:
+                return replace(attempt, iterations=done)
+            task = replace(task, given=frame)
+            attempt = load_step(task, end, prepared)
+            done += attempt.iterations
+        if task.frame.wet:
+            return replace(attempt, iterations=done, converged=False, reason=UNSTEADY)
+        return attempt
+
+    def _sound(self, attempt: Attempt) -> Attempt:
+        """An attempt, or one that has not converged: iterations of metal that flows may leave the solution so far behind
+        that what is out of balance is small beside the forces that they have come to."""
+        extent = float(np.ptp(self._problem.model.mesh.points, axis=0).max())
+        largest = float(np.abs(self._problem.displacement(attempt.state)).max(initial=0.0))
+        if self._problem.constant or not attempt.converged or largest < ABSURD * extent:
+            return attempt
+        reason = f"displacements of {largest:.2g} exceed {ABSURD:g} times the model size {extent:.2g}"
+        return replace(attempt, converged=False, reason=reason, balance=None)
 
     def replace(self, solver: LinearSolver) -> None:
         """As in ``Stepper``: for all steps to come."""

@@ -37,7 +37,7 @@ from abut.output.lock import Lock
 from abut.output.modes import modes_summary, names, write_modes
 from abut.output.options import EVERYTHING, Output, single
 from abut.report import Origin, write_report
-from abut.solution import PreloadResult, Solution, Step
+from abut.solution import PenetrationResult, PreloadResult, Solution, Step, mid_surface
 from abut.solution.grids import contact_grid
 from abut.types import Json
 
@@ -143,6 +143,10 @@ def write_steps(
             continue
         if output.bodies:
             fields(folder, solution.model, step, output)
+        if output.bodies and solution.model.mesh.shells:
+            grid = single(mid_surface.grid(solution.model.mesh, step, solution.model.small_strains))
+            path = folder / _shell_file(step)
+            write_vtu(path, grid.points, grid.blocks, grid.point_data, grid.cell_data, raw=True, small=output.small)
         for contact, name in zip(step.contacts, _contact_files(step)) if output.contacts else ():
             grid = single(contact_grid(step, contact))
             path = folder / name
@@ -159,6 +163,8 @@ def write_index(folder: Path, solution: Solution, output: Output, final: bool = 
     end = solution.model.solve.end
     if output.bodies:
         _write_collection(folder, "fields", shown, end, [found_name(folder, step.number) for step in shown])
+        if solution.model.mesh.shells:
+            _write_collection(folder, "shells", shown, end, [_shell_file(step) for step in shown])
     files = [_contact_files(step) for step in shown]
     for index, label in enumerate(_contact_labels(solution.steps[-1]) if output.contacts else ()):
         _write_collection(folder, label, shown, end, [names[index] for names in files])
@@ -221,10 +227,16 @@ def is_written(folder: Path, step: Step, output: Output = EVERYTHING) -> bool:
 def _files(solution: Solution, shown: Sequence[Step], output: Output) -> list[str]:
     """Names of all files of contacts, in the steps shown, and of probes."""
     tables = probes.table_names([probe.name for probe in solution.model.probes])
+    if output.bodies and solution.model.mesh.shells:
+        tables += ["shells.pvd", *(_shell_file(step) for step in shown)]
     if not output.contacts:
         return tables
     collections = [f"{label}.pvd" for label in _contact_labels(solution.steps[-1])]
     return [*tables, *collections, *(name for step in shown for name in _contact_files(step))]
+
+
+def _shell_file(step: Step) -> str:
+    return f"shells_{step.number:04d}.vtu"
 
 
 def _contact_labels(step: Step) -> list[str]:
@@ -259,8 +271,7 @@ def _step_summary(step: Step) -> Json:
         "rigid": {
             body: {name: value.tolist() for name, value in vars(result).items()} for body, result in step.rigid.items()
         },
-        **({"preloads": {name: _preload(result) for name, result in step.preloads.items()}} if step.preloads else {}),
-        **({"springs": {name: force.tolist() for name, force in step.springs.items()}} if step.springs else {}),
+        **_carried(step),
         "probes": probes.summary(step),
         "cycling": {name: facets.tolist() for name, facets in step.cycling.items()},
         "unsettled": [
@@ -275,7 +286,17 @@ def _step_summary(step: Step) -> Json:
     }
 
 
-def _preload(result: PreloadResult) -> Json:
+def _carried(step: Step) -> Json:
+    """What preloads, springs and fluids exert, where there are any."""
+    every = {
+        "preloads": {name: _numbers(result) for name, result in step.preloads.items()},
+        "springs": {name: force.tolist() for name, force in step.springs.items()},
+        "penetrations": {name: _numbers(result) for name, result in step.penetrations.items()},
+    }
+    return {name: results for name, results in every.items() if results}
+
+
+def _numbers(result: PreloadResult | PenetrationResult) -> Json:
     return {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in vars(result).items()}
 
 

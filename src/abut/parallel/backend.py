@@ -48,7 +48,7 @@ class DistributedBodies:
 
     def assembled(self) -> DistributedBodies:
         """Have every process assemble its part."""
-        varying = bool(self.model.holds or self.model.springs)  # their tangents are added to it
+        varying = bool(self.model.holds or self.model.springs or self.model.penetrations)  # a stiffness linearised anew
         again = self.model.finite or varying  # iterations ask for it anew
         arguments = [(replace(self.model.deformable, mesh=piece.mesh), again) for piece in self.pieces]
         self.team.each(part.assemble, per_rank=arguments)

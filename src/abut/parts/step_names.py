@@ -11,6 +11,7 @@ from abut.errors import InputError
 
 ENTITY = re.compile(rb"#(\d+)\s*=\s*([A-Z0-9_]+)\s*\((.*?)\)\s*;", re.DOTALL)
 TEXT = re.compile(r"'((?:[^']|'')*)'")
+WIDE, NARROW = re.compile(r"\\X2\\((?:[0-9A-F]{4})+)\\X0\\"), re.compile(r"\\X\\([0-9A-F]{2})")
 KEPT = {
     "MANIFOLD_SOLID_BREP", "BREP_WITH_VOIDS", "CLOSED_SHELL", "ORIENTED_CLOSED_SHELL", "ADVANCED_BREP_SHAPE_REPRESENTATION",
     "SHAPE_REPRESENTATION_RELATIONSHIP", "SHAPE_DEFINITION_REPRESENTATION", "PRODUCT_DEFINITION_SHAPE",
@@ -28,8 +29,9 @@ class Entity:
 
 
 def solid_names(path: Path) -> list[tuple[str, int]]:
-    """Of each solid in its order in the file its name, "" where it has none, and its number of faces: its own name, or else
-    that of the product it is the shape of. Files of other formats have none."""
+    """Of each solid in its order in the file its name, "" where it has none, and its number of faces: the name of the
+    product whose only shape it is, or else its own, which many programs write after the last feature ("Boss-Extrude1").
+    Files of other formats have none."""
     if path.suffix.lower() not in (".step", ".stp"):
         return []
     try:
@@ -46,10 +48,17 @@ def solid_names(path: Path) -> list[tuple[str, int]]:
     result = []
     for number, entity in sorted(entities.items()):
         if entity.kind in SOLIDS:
-            names = (*entity.texts[:1], products.get(number, ""))
-            name = next((text for text in names if text and not text.startswith(NAMELESS)), "")
+            names = (products.get(number, ""), *entity.texts[:1])
+            name = next((text for text in map(decoded, names) if text and not text.startswith(NAMELESS)), "")
             result.append((name, _faces(entity, entities)))
     return result
+
+
+def decoded(text: str) -> str:
+    """A text of the file with its codes for other characters (ISO 10303-21, 6.4.3) as these."""
+    text = WIDE.sub(lambda code: bytes.fromhex(code[1]).decode("utf-16-be", "replace"), text)
+    text = NARROW.sub(lambda code: chr(int(code[1], 16)), text)
+    return text.replace("''", "'").replace("\\\\", "\\")
 
 
 def _faces(solid: Entity, entities: Mapping[int, Entity]) -> int:

@@ -28,6 +28,7 @@ from abut.problem.kinematics import Kinematics
 from abut.problem.loads import Loads, followers, loads
 from abut.problem.other_fields import other_fields
 from abut.problem.pair import Pair
+from abut.problem.penetrations import Penetrations
 from abut.problem.preloads import LockedPreloads
 from abut.problem.problem import ContactProblem
 from abut.problem.restraint import require_balance, require_unmoved, restraint
@@ -88,7 +89,8 @@ def assemble(
     require_unmoved(restrained, forces)
     _check_finite(reduced.diagonal(), loaded.forces)
     bodies = _bodies(model, loaded, backend)
-    beside = [*_beside(model, constraints, loaded), *(term for term in (sprung, held, passing) if term)]
+    fluids = Penetrations.of(model, every)
+    beside = [*_beside(model, constraints, loaded), *(term for term in (sprung, held, passing, fluids) if term)]
     own = _own(model, [term.name for term in (bodies, *beside)])
     beside += own
     affine = not (model.finite or model.physics) and _is_constant(model, [bodies, *beside])

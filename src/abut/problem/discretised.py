@@ -15,6 +15,7 @@ from abut.model import Model
 from abut.model.conditions import weights
 from abut.model.offset import offsets
 from abut.problem.constraints import Constraints
+from abut.problem.frame import Frame
 from abut.problem.free_modes import FreeModeSprings
 from abut.problem.kinematics import Kinematics, Placed
 from abut.problem.pair import Pair, by_pair
@@ -101,10 +102,10 @@ class Discretised:
             for pair, values, closed in zip(self.pairs, *parts)
         ]
 
-    def shares(self, before: State, there: Motion, now: Motion) -> list[Share]:
-        """Of every term at ``now``, which follows ``there``, with the history of ``before``."""
+    def shares(self, before: State, there: Motion, now: Motion, frame: Frame) -> list[Share]:
+        """Of every term at ``now``, which follows ``there``, with the history of ``before``, in a frame."""
         return [
-            term.evaluate(*(replace(motion, history=before.history.of(term.name)) for motion in (there, now)))
+            term.evaluate(*(replace(at, history=before.history.of(term.name), wet=frame.wet) for at in (there, now)))
             for term in self.terms
         ]
 

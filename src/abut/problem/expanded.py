@@ -31,7 +31,7 @@ def expanded(problem: Discretised, before: State, frame: Frame, now: State, here
     there = weights(problem.model.histories, before.time) if change.any() else factors
     constraints = problem.constraints.near(now.unknowns, there)
     began, contacts = problem.values(before), list[ContactNow]()
-    shares = problem.shares(before, problem.motion(before.time, began), problem.motion(now.time, here))
+    shares = problem.shares(before, problem.motion(before.time, began), problem.motion(now.time, here), frame)
     n = constraints.free.shape[0]
     assert problem.kinematics is not None
     for kind, part, placed in zip(problem.kinematics, frame.pairs, problem.placed(now)):

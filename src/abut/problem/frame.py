@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from abut.contact.slip_points import Past
+from abut.problem.wet import Wet
 
 Array = NDArray[np.float64]
 
@@ -32,6 +33,12 @@ class PairFrame:
 
 @dataclass(frozen=True)
 class Frame:
-    """Of all contact pairs, in turn. The same object where a step ends in the frame that it began with."""
+    """Of all contact pairs, in turn, and how far each fluid has got. The same object where a step ends in the frame that it
+    began with."""
 
     pairs: tuple[PairFrame, ...]
+    wet: tuple[Wet, ...] = ()
+
+    def with_wet(self, wet: tuple[Wet, ...]) -> Frame:
+        """With fluids elsewhere; the same object where they are there already."""
+        return self if wet is self.wet else replace(self, wet=wet)

@@ -43,7 +43,7 @@ def settled(problem: Discretised, before: State, frame: Frame, end: State) -> Fr
     """As ``ContactProblem.settled``."""
     parts = zip(problem.kinematics or (), frame.pairs, problem.placed(before), problem.placed(end))
     pairs = tuple(kind.settled(part, here, there) for kind, part, here, there in parts)
-    return frame if all(new is old for new, old in zip(pairs, frame.pairs)) else Frame(pairs)
+    return frame if all(new is old for new, old in zip(pairs, frame.pairs)) else replace(frame, pairs=pairs)
 
 
 def ended(problem: Discretised, before: State, state: State) -> Frame:

@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.problem import affine, load_steps
+from abut.problem import affine, fluid_frames, load_steps
 from abut.problem.contact_pairs import with_plain_functions
 from abut.problem.discretised import Discretised, stacked
 from abut.problem.expanded import expanded
@@ -83,15 +83,18 @@ class ContactProblem(Discretised):
 
     def frame(self, before: State, guess: State | None = None) -> Frame:
         """As in ``Problem``."""
-        return affine.frame(self, before) if self.kinematics is None else load_steps.begun(self, before, guess)
+        frame = affine.frame(self, before) if self.kinematics is None else load_steps.begun(self, before, guess)
+        return fluid_frames.begun(self, frame, before)
 
     def settled(self, before: State, frame: Frame, end: State) -> Frame:
         """The frame that belongs to the end of a step in ``frame``; the same object where that one serves as well."""
-        return frame if self.kinematics is None else load_steps.settled(self, before, frame, end)
+        here = frame if self.kinematics is None else load_steps.settled(self, before, frame, end)
+        return fluid_frames.spread(self, here, end)
 
     def ended(self, state: State) -> Frame:
         """The frame in which a converged state ended, slips counted from there on."""
-        return affine.frame(self, state) if self.kinematics is None else load_steps.ended(self, state, state)
+        frame = affine.frame(self, state) if self.kinematics is None else load_steps.ended(self, state, state)
+        return fluid_frames.begun(self, frame, state)
 
     def handed(self, state: State, old: Frame, new: Frame) -> State:
         """A state whose functions follow others in a new frame, with the pressures and tractions that they had; the same
@@ -134,9 +137,8 @@ class ContactProblem(Discretised):
 
     def again(self, before: State, state: State) -> Linearised:
         """As in ``Problem``."""
-        if self.kinematics is not None:
-            return self.linearise(before, load_steps.ended(self, before, state), state)
-        return self.linearise(before, self.frame(before), state)
+        frame = affine.frame(self, before) if self.kinematics is None else load_steps.ended(self, before, state)
+        return self.linearise(before, fluid_frames.begun(self, frame, state), state)
 
     def restrict(self, state: State) -> State:
         """As in ``Problem``."""
@@ -144,8 +146,9 @@ class ContactProblem(Discretised):
 
     def with_ordinary(self, closed: NDArray[np.bool_]) -> ContactProblem:
         """As in ``Problem``."""
+        wet = {item.contact for item in self.model.penetrations}  # whose fluids push as dual pressures do
         pairs = [
-            with_plain_functions(self.model, pair, self.constraints, part)
+            pair if pair.contact.name in wet else with_plain_functions(self.model, pair, self.constraints, part)
             for pair, part in zip(self.pairs, self.split(closed))
         ]
         if all(new is old for new, old in zip(pairs, self.pairs)):

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.problem.constraints import Constraints
+from abut.problem.wet import Wet
 from abut.types import Operator, Sparse
 
 Vector = NDArray[np.float64]
@@ -45,12 +46,13 @@ class MatrixTangent:
 @dataclass(frozen=True)
 class Motion:
     """What a term sees of a state. displacement: (dim n_points,) of all points; history: the term's, by part, empty at the
-    start; fields: others by name, (places, components)."""
+    start; fields: others by name, (places, components); wet: how far fluids have got into contacts, in turn."""
 
     time: float
     displacement: Vector
     history: Mapping[str, Vector] = field(default_factory=dict)
     fields: Mapping[str, Vector] = field(default_factory=dict)
+    wet: Sequence[Wet] = ()
 
 
 @dataclass(frozen=True)

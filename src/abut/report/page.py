@@ -17,6 +17,7 @@ from abut.diagnosis.advice import remedies, unsettled
 from abut.diagnosis.cures import cure
 from abut.io.versions import versions
 from abut.report.arrays import Packer
+from abut.report.carried import carried_tables
 from abut.report.chart import Beside, Chart
 from abut.report.contact_words import ZERO, centre, force, moment, number, on_bodies, place, vector
 from abut.report.describe import tables
@@ -25,8 +26,6 @@ from abut.report.lines import pressure_lines
 from abut.report.modes import modes_tables
 from abut.report.motion import paths
 from abut.report.origin import Origin, comparison, ellipse
-from abut.report.preloads import HEAD as OF_PRELOADS
-from abut.report.preloads import preload_rows
 from abut.report.probes import charts, probe_table
 from abut.report.quantities import extremes, largest_by_body
 from abut.report.scene import scene
@@ -254,7 +253,7 @@ def _rigid(solution: Solution) -> str:
         for name, r in solution.steps[-1].rigid.items()
     ]
     head = ["rigid body, coupling", "displacement", "rotation", "force on it", "moment about its reference"]
-    carried = _table(OF_PRELOADS, preload_rows(solution), "What preloads carry") if solution.model.preloads else ""
+    carried = "".join(_table(*table) for table in carried_tables(solution))
     return (_table(head, rows) if rows else "") + carried
 
 

@@ -4,6 +4,7 @@ from abut.solution.contacts import Check, ContactResult, FrictionResult, Pressur
 from abut.solution.energy import Energy
 from abut.solution.flow import Flow
 from abut.solution.modes import ModesResult
+from abut.solution.penetrations import PenetrationResult
 from abut.solution.preloads import PreloadResult
 from abut.solution.progress import Iteration, Observer, Phase
 from abut.solution.records import Flips, OnStep, ProbeResult, RigidResult, Saved, SavedPart, Solution, Step
@@ -11,6 +12,7 @@ from abut.solution.state import History, Largest, State
 
 __all__ = [
     "Check", "ContactResult", "Energy", "Flips", "Flow", "FrictionResult", "History", "Iteration", "Largest",
-    "ModesResult", "Observer", "OnStep", "Phase", "PreloadResult", "PressureStatistics", "ProbeResult", "Resultant",
+    "ModesResult", "Observer", "OnStep", "PenetrationResult", "Phase", "PreloadResult", "PressureStatistics", "ProbeResult",
+    "Resultant",
     "RigidResult", "Saved", "SavedPart", "Solution", "State", "Step",
 ]  # fmt: skip

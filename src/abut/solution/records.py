@@ -22,6 +22,7 @@ from abut.solution.energy import Energy
 from abut.solution.flow import Flow
 from abut.solution.idle import idle_contacts
 from abut.solution.modes import ModesResult
+from abut.solution.penetrations import PenetrationResult
 from abut.solution.preloads import PreloadResult, preload_checks, weak_checks
 from abut.solution.progress import Iteration
 from abut.solution.run_checks import run_checks
@@ -124,6 +125,7 @@ class Step:
     flow: Flow | None = None  # None where no material yields
     preloads: Mapping[str, PreloadResult] = field(default_factory=dict)
     springs: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)  # force (dim,) on what each is on
+    penetrations: Mapping[str, PenetrationResult] = field(default_factory=dict)
     nodal_reaction: NDArray[np.float64] | None = None  # (n_points, dim) of supports and links
 
     def __repr__(self) -> str:
@@ -289,6 +291,7 @@ class Solution:
         lines: dict[tuple[str, str], list[Check]] = {}
         idle = _driven(self.model) and not any(step.strained for step in self.steps)
         response = Check("", "response", float(idle), RESPONSE, "1 where something is prescribed and nothing deforms")
+        loaded = _loaded(self.model)
         most = max((step.energy.size for step in self.steps if step.energy is not None), default=0.0)
         for step in self.steps:
             balance = Check(
@@ -311,11 +314,10 @@ class Solution:
                                    "work of loads and supports less what is stored and what friction and flow take, over "
                                    "the work of all nodal forces by size"))  # fmt: skip
             if step.flow is not None:
-                model.append(step.flow.check(self.model.finite))
+                model += step.flow.checks(self.model.finite, bool(self.model.loads))
             if step.stress_error is not None:
                 model.append(Check("", "stress error", step.stress_error.largest, STRESS_ERROR,
-                                   "estimated error of the elements' stresses in the energy norm, of the whole model "
-                                   "or near contact; what nodes show is closer",
+                                   step.stress_error.meaning(loaded),
                                    pressure=float(np.sqrt(step.stress_error.energy)), highest=True,
                                    notice=STRESS_NOTICED))  # fmt: skip
             model += preload_checks(step.preloads)
@@ -374,6 +376,11 @@ def _driven(model: Model) -> bool:
     given = (*model.supports, *model.loads, *model.equations, *model.rigid, *model.couplings)
     hot = any(solid.temperature for solid in model.solids)
     return hot or any(map(drives, given)) or any(smallest_offset(contact) < 0.0 for contact in model.contacts)
+
+
+def _loaded(model: Model) -> bool:
+    """Whether forces may act, so that what contacts carry is not due to motions, heat and interference alone."""
+    return not model.contacts or bool(model.loads or model.preloads or model.rigid or model.couplings or model.physics)
 
 
 OnStep = Callable[[Solution, Saved], None]  # gets the solution so far after each converged step, and what restarts it

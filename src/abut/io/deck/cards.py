@@ -310,6 +310,8 @@ def _text(path: Path) -> str:
         data = path.read_bytes()
     except OSError as error:
         raise InputError(f"cannot read deck {path}: {error.strerror}") from None
+    if data.startswith(b"\x1f\x8b"):
+        raise InputError(f"{path}: packed by gzip; unpack it first (gunzip {path.name})")
     if b"\0" in data:
         raise InputError(f"{path}: not a text file; is it an Abaqus or CalculiX deck?")
     return data.removeprefix(codecs.BOM_UTF8).decode("latin-1")

@@ -15,12 +15,14 @@ from abut.io.deck.record import NO_FRICTION, Behaviour, Friction, GeneralContact
 
 @dataclass(frozen=True)
 class Interaction:
-    """What surfaces do to each other. overclosure: HARD, LINEAR, ...; bilateral: they never separate (NO SEPARATION)."""
+    """What surfaces do to each other. overclosure: HARD, LINEAR, ...; bilateral: they never separate (NO SEPARATION);
+    changing: the pressure over the overclosure is another one in a later step."""
 
     overclosure: str = "HARD"
     behaviour: Behaviour = ()
     friction: Friction = NO_FRICTION
     bilateral: bool = False
+    changing: bool = False
 
 
 FINE = 40  # points of an exponential curve over the clearance in which the pressure falls to a hundredth: 0.2 % off between
@@ -99,7 +101,14 @@ def _contact_pairs(
             raise line.error(
                 f"INTERACTION={interaction}: NO SEPARATION goes without friction; take *FRICTION out, or NO SEPARATION"
             )
-        result.append(replace(pair, behaviour=properties.behaviour, bilateral=properties.bilateral and not tied))
+        result.append(
+            replace(
+                pair,
+                behaviour=properties.behaviour,
+                bilateral=properties.bilateral and not tied,
+                changing=properties.changing,
+            )
+        )
     return result
 
 
@@ -129,6 +138,8 @@ def _general_contact(cards: Sequence[Card], interactions: Mapping[str, Interacti
             properties = interactions[name.upper()]
             if properties.bilateral:
                 raise line.error("NO SEPARATION goes with named surfaces; name them in *CONTACT PAIR")
+            if properties.changing:
+                raise line.error("*CHANGE SURFACE BEHAVIOR goes with named surfaces; name them in *CONTACT PAIR")
     if found is None:
         for card in of(cards, "CONTACT"):
             raise card.error("no *CONTACT INCLUSIONS, ALL EXTERIOR follows; add it, or name surfaces in *CONTACT PAIR")
@@ -171,12 +182,18 @@ def _interactions(cards: Sequence[Card], reasons: Reasons) -> dict[str, Interact
     """Interactions by name, with the changes of their friction in later steps."""
     result: dict[str, Interaction] = {}
     current, change, step = "", "", 0
+    law: Card | None = None
     for card in cards:
         with reasons.gathered(defines=True):
             step += card.key == "STEP"
             if card.key == "SURFACEINTERACTION":
                 current = card.need("NAME").upper()
                 result[current] = Interaction()
+            elif card.key == "CHANGESURFACEBEHAVIOR":
+                law = card
+            elif card.key == "SURFACEBEHAVIOR" and law is not None:
+                name, before, law = changes(law, result), law, None
+                result[name] = _other_law(result[name], before, card)
             elif card.key == "SURFACEBEHAVIOR":
                 if not current:
                     raise card.error("it must follow a *SURFACE INTERACTION")
@@ -195,6 +212,17 @@ def _interactions(cards: Sequence[Card], reasons: Reasons) -> dict[str, Interact
                 rub = changed(properties.friction, card, step) if change else Friction(friction(card))
                 result[change or current], change = replace(properties, friction=rub), ""
     return result
+
+
+def _other_law(properties: Interaction, change: Card, card: Card) -> Interaction:
+    """With another law from a step on, which makes no difference to contact without penetration. Raises InputError where
+    surfaces are glued, or never separate, before or after."""
+    if "TIED" in (properties.overclosure, _overclosure(card)) or properties.bilateral or card.has("NO SEPARATION"):
+        raise change.refusal(
+            "surfaces that are glued, or cannot separate, in some steps only are not supported; make a deck for each state",
+            "CHANGE SURFACE BEHAVIOR",
+        )
+    return replace(properties, changing=True)
 
 
 def _overclosure(card: Card) -> str:

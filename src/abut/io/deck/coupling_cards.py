@@ -118,5 +118,6 @@ def _weighted(card: Card, cards: Sequence[Card], mesh: MeshCards) -> Coupling:
         weights |= dict.fromkeys(mesh.existing(line, 0).tolist(), weight)
     nodes = np.array(sorted(weights), np.int64)
     return Coupling(
-        f"coupling to {reference}", True, reference, "", nodes, ALL, np.array([weights[n] for n in nodes]), card.place
-    )
+        f"coupling to {reference}", True, reference, "", nodes, ALL, np.array([weights[n] for n in nodes]), card.place,
+        weighted=True,
+    )  # fmt: skip

@@ -115,6 +115,7 @@ def _beams() -> dict[str, ElementType]:
 
 
 ELEMENTS = _types()
+SHELLS = frozenset(_shells())
 
 # Local facet of ``abut.cells`` for S1, S2, ...
 _TETRAHEDRON = (0, 1, 2, 3)

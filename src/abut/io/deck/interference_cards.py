@@ -13,6 +13,7 @@ from abut.io.deck.contact_cards import sides
 from abut.io.deck.mesh_cards import MeshCards
 from abut.io.deck.reasons import Reasons
 from abut.io.deck.record import Amplitude, Pair, Prescribed, Step
+from abut.io.deck.removed_elements import of_elements
 
 CARD, CHANGE = "CONTACTINTERFERENCE", "MODELCHANGE"
 FAR = 10.0  # sizes of the model: the overlap that a pair which is removed would allow
@@ -41,7 +42,7 @@ def with_interferences(
         values: list[Prescribed] = []
         new: set[str] = set()
         for card in cards:
-            if card.key == CHANGE:
+            if card.key == CHANGE and not of_elements(card):
                 with reasons.gathered():
                     known[STAYS] = Amplitude(((0.0, 1.0), (step.period, 1.0)), False)
                     values += _changes(card, scene)
@@ -81,8 +82,6 @@ def _values(card: Card, step: Step, scene: Scene, down: str) -> Iterator[Prescri
 
 def _changes(card: Card, scene: Scene) -> Iterator[Prescribed]:
     """Of *MODEL CHANGE."""
-    if key(card.get("TYPE", "ELEMENT") or "") != "CONTACTPAIR":
-        raise card.error("elements that come or go between steps are not supported; make a deck for each state")
     if card.has("ADD") == card.has("REMOVE"):
         raise card.error("expected either ADD or REMOVE")
     far = FAR * float(np.ptp(scene.mesh.points, axis=0).max())

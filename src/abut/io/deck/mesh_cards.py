@@ -17,6 +17,7 @@ from abut.io.deck.record import Block, Faces, Numbers
 from abut.io.deck.spring_cards import ELEMENTS as SPRINGS
 
 SIDES = {"SNEG": "S1", "SPOS": "S2"}  # of shells
+POINTS = "DCOUP"  # elements that only bear the weights of *DISTRIBUTING COUPLING
 MOST = 10_000_000  # numbers in one GENERATE, or elements of a set, beyond which a deck is wrong
 
 
@@ -102,7 +103,7 @@ def mesh_cards(cards: Iterable[Card], notes: list[str], reasons: Reasons) -> Mes
             if card.get("NSET"):
                 node_sets.add(card.need("NSET"), members)
         elif card.key == "ELEMENT":
-            members = _elements(card, elements, nodes)
+            members = _elements(card, elements, nodes, notes)
             if card.get("ELSET"):
                 element_sets.add(card.need("ELSET"), members)
         elif card.key == "NSET":
@@ -112,6 +113,9 @@ def mesh_cards(cards: Iterable[Card], notes: list[str], reasons: Reasons) -> Mes
             members = _set(card, "element", element_sets, element_sets, elements)
             members = _present(card, "element", members, {*elements, *springs} if springs else elements, notes)
             element_sets.add(card.need("ELSET"), np.array([e for e in members.tolist() if e in elements], np.int64))
+        elif card.key == POINTS:
+            if card.get("ELSET"):
+                element_sets.add(card.need("ELSET"), np.empty(0, np.int64))  # no section of theirs counts
         elif card.key == SPRINGS:
             springs.update(number for line in card.lines if (number := as_integer(line.text(0))) is not None)
             if card.get("ELSET"):
@@ -123,7 +127,7 @@ def mesh_cards(cards: Iterable[Card], notes: list[str], reasons: Reasons) -> Mes
 
     springs: set[int] = set()
     there: Collection[int] = ()
-    for keys in (("NODE",), ("ELEMENT",), (SPRINGS,), ("NSET", "ELSET"), ("SURFACE",)):
+    for keys in (("NODE",), ("ELEMENT",), (SPRINGS, POINTS), ("NSET", "ELSET"), ("SURFACE",)):
         there = {*nodes, *virtual}
         for card in cards:
             if card.key in keys:
@@ -179,7 +183,10 @@ def _nodes(card: Card, nodes: dict[int, tuple[float, float, float]]) -> Numbers:
 
 
 def _elements(
-    card: Card, elements: dict[int, tuple[str, tuple[int, ...]]], nodes: Mapping[int, tuple[float, float, float]]
+    card: Card,
+    elements: dict[int, tuple[str, tuple[int, ...]]],
+    nodes: Mapping[int, tuple[float, float, float]],
+    notes: list[str],
 ) -> Numbers:
     code = key(card.need("TYPE"))
     if code not in ELEMENTS:
@@ -188,12 +195,15 @@ def _elements(
     listed: list[int] = []
     numbers: list[int] = []
     start = card.lines[0] if card.lines else None
+    excess: Line | None = None
     for line in card.lines:
         start = start if numbers and start else line
         last = len(line.fields) - (line.fields[-1] == "")
         numbers += [line.integer(i, "node number" if numbers or i else "element number") for i in range(last)]
         if len(numbers) <= count:
             continue
+        if len(numbers) > count + 1 and start is line and line.fields[-1] == "":  # a line for each, ended by a comma
+            excess, numbers = excess or start, numbers[: count + 1]
         if len(numbers) > count + 1:
             raise start.error(f"element {numbers[0]} has {len(numbers) - 1} nodes, but {code} needs {count}")
         for node in numbers[1:]:
@@ -206,6 +216,8 @@ def _elements(
         numbers = []
     if numbers and start:
         raise start.error(f"element {numbers[0]} has {len(numbers) - 1} nodes, but {code} needs {count}")
+    if excess is not None:
+        notes.append(f"{excess.place}: *ELEMENT: more nodes on a line than {code} has: the first {count} count")
     return np.array(listed, dtype=np.int64)
 
 

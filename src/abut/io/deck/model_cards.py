@@ -13,6 +13,7 @@ from abut.io.deck.cards import Card, Line, as_float, as_integer, key, of
 from abut.io.deck.contact_cards import sides
 from abut.io.deck.elastic_cards import elastic, expansion, orientation
 from abut.io.deck.mesh_cards import MeshCards
+from abut.io.deck.multipoint_cards import multipoint
 from abut.io.deck.plastic_cards import hardening
 from abut.io.deck.reasons import Reasons
 from abut.io.deck.record import (
@@ -145,7 +146,7 @@ def _beam_section(
     """One *BEAM SECTION. Raises InputError for other sections than rectangles, and for widths that are none."""
     if not key(card.get("SECTION", "RECT") or "").startswith("RECT"):  # CalculiX reads four letters
         raise card.error(
-            f"SECTION={card.get('SECTION')}: only rectangles (RECT) are supported; model the part with solids"
+            f"SECTION={card.get('SECTION')}: only rectangles (RECT) are supported; model the part with shells or solids"
         )
     line = card.first("widths")
     first = line.number(0, "width")
@@ -197,16 +198,16 @@ _SECTIONS = {"SOLIDSECTION": _section, "SHELLSECTION": _shell_section, "BEAMSECT
 
 
 def equations(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[Equation, ...]:
-    """*EQUATION, and *MPC that say that displacements are equal."""
+    """*EQUATION, and *MPC, which are equations between displacements."""
     result: list[Equation] = []
+    finite = any(card.has("NLGEOM") and key(card.get("NLGEOM") or "") != "NO" for card in of(cards, "STEP"))
     for card in of(cards, "EQUATION"):
         with reasons.gathered():
             for head, fields in _terms(card):
                 result += _equations(head, fields, mesh)
     for card in of(cards, "MPC"):
         with reasons.gathered():
-            for line in card.lines:
-                result += _multipoint(line, mesh)
+            result += multipoint(card, mesh, finite)
     return tuple(result)
 
 
@@ -253,18 +254,6 @@ def _direction(line: Line, i: int) -> int:
     if direction > 3:
         raise line.error(f"direction {direction}: only displacements (1, 2, 3) are supported")
     return direction
-
-
-def _multipoint(line: Line, mesh: MeshCards) -> list[Equation]:
-    kind = key(line.text(0))
-    if kind not in ("TIE", "PIN"):
-        raise line.error(f"type {kind or '(none)'} is not supported; TIE and PIN are; or write *EQUATION")
-    a, b = (mesh.existing(line, i, ordered=True) for i in (1, 2))
-    if len(b) == 1:
-        b = np.repeat(b, len(a))
-    if len(a) != len(b):
-        raise line.error(f"the two node sets have {len(a)} and {len(b)} nodes; they must have the same number")
-    return [Equation(((int(n), d, 1.0), (int(m), d, -1.0)), line.place) for n, m in zip(a, b) for d in (1, 2, 3)]
 
 
 def rigid_bodies(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[RigidBody, ...]:

@@ -9,18 +9,24 @@ from abut.io.deck.reasons import DeckError
 from abut.io.deck.record import Deck, Prescribed
 from abut.io.deck.time_histories import RAMP, Course, Key, course_within, given_in, over_total_time, tidy
 
+LED = (
+    "is held where it was (FIXED) in an earlier step, and led on from there in this one: not supported; hold it with the "
+    "displacement as a number from the first step on that holds it"
+)
+
 
 @dataclass(frozen=True)
 class Stay:
     """One time that a support acts, times on the axis from 0 to 1: it begins at ``since`` where the node is, has what is
     prescribed at ``reached``, acts to ``until`` (None: the end), and its force is gone at ``released``, as the step ends
-    that takes it away. course: what it leads to."""
+    that takes it away. course: what it leads to; frozen: nothing, it holds the node where it is at ``since``."""
 
     since: float
     reached: float
     until: float | None
     released: float | None
     course: Course
+    frozen: bool = False
 
 
 def passing(deck: Deck) -> dict[Key, tuple[Stay, ...]]:
@@ -38,7 +44,9 @@ def passing(deck: Deck) -> dict[Key, tuple[Stay, ...]]:
         onward = {key: of.last for key, of in going.items() if key not in given and over_total_time(deck, of.last[0])}
         for key, (value, size) in {**given, **onward}.items():
             begun = key not in going
-            known = going.get(key) or _Going(start, end, [(start, 0.0)], (value, size))
+            known = going.get(key) or _Going(start, end, [(start, 0.0)], (value, size), value.frozen and not first)
+            if known.frozen and not value.frozen:
+                raise DeckError(value.place, f"*BOUNDARY: node {int(key[0])} {LED}")
             if begun and value.amplitude and not first:
                 known.reached = start + RAMP * step.period
             before = [p for p in known.points if p[0] <= start]
@@ -60,14 +68,15 @@ class _Going:
     reached: float
     points: list[tuple[float, float]]
     last: tuple[Prescribed, float]
+    frozen: bool = False
 
     def ended(self, until: float | None, released: float | None, total: float) -> Stay:
         """With times over the whole."""
         course = tidy([(min(t / total, 1.0), v) for t, v in self.points])
         begun = self.since / total, min(self.reached / total, 1.0)
         if until is None or released is None:
-            return Stay(*begun, None, None, course)
-        return Stay(*begun, until / total, min(released / total, 1.0), course)
+            return Stay(*begun, None, None, course, self.frozen)
+        return Stay(*begun, until / total, min(released / total, 1.0), course, self.frozen)
 
 
 def check_passing(deck: Deck, stays: Mapping[Key, object], local: Collection[int], used: Collection[int]) -> None:

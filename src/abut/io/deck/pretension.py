@@ -15,7 +15,8 @@ from abut.io.deck.record import Block, Deck, Equation, Numbers, PreTension
 
 def cut(deck: Deck) -> Deck:
     """The deck with every pre-tension section worked in. Direction 1 of the section's node is how much the two sides
-    overlap, and a force there the tension of the bolt. Raises InputError for sections that do not cut through."""
+    overlap, and a force there the tension of the bolt, if its normal points out of the elements that the surface names; a
+    note says where it points into them, so that a force presses. Raises InputError for sections that do not cut through."""
     for section in deck.pretension:
         deck = _cut(deck, section)
     return replace(deck, pretension=())
@@ -37,9 +38,14 @@ def _cut(deck: Deck, section: PreTension) -> Deck:
     blocks = tuple(_moved(block, side, nodes, double) for block in deck.blocks)
     at = np.searchsorted(deck.nodes, nodes)
     normal = _normal(deck, facets)
+    notes = list(deck.notes)
     if section.normal is not None:
-        direction = np.array(section.normal) / np.linalg.norm(section.normal)
-        normal = direction if direction @ normal > 0.0 else -direction
+        outward, normal = normal, np.array(section.normal) / np.linalg.norm(section.normal)
+        if outward @ normal < 0.0:
+            notes.append(
+                f"{section.place}: *PRE-TENSION SECTION: the normal points into the elements of '{section.surface}': forces "
+                f"> 0 on node {section.node} press and forces < 0 pull, as in CalculiX; turn it round for the opposite"
+            )
     across = np.linalg.svd(normal[None, :])[2][1:]
     equations = []
     for old, new in zip(nodes.tolist(), double.tolist()):
@@ -57,6 +63,7 @@ def _cut(deck: Deck, section: PreTension) -> Deck:
         points=np.concatenate([deck.points, deck.points[at]]),
         blocks=blocks,
         equations=(*deck.equations, *equations),
+        notes=tuple(notes),
     )
 
 

@@ -22,9 +22,11 @@ from abut.io.deck.model_cards import (
     sections,
     transforms,
 )
+from abut.io.deck.multipoint_cards import multipoint_notes
 from abut.io.deck.output_cards import requests
 from abut.io.deck.reasons import DeckError, Reasons
 from abut.io.deck.record import Amplitude, Deck, Prescribed
+from abut.io.deck.removed_elements import removed, without
 from abut.io.deck.repeated import repeated_members, without_repeated
 from abut.io.deck.shell_cards import nodal_thickness, normals
 from abut.io.deck.spring_cards import springs
@@ -56,7 +58,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
     history, known = with_interferences(
         steps(groups, mesh, known, reasons), groups, Scene(mesh, pair_list, known), reasons
     )
-    notes += [*friction_notes(cards), *repeated_members(cards, mesh)]
+    notes += [*friction_notes(cards), *multipoint_notes(cards), *repeated_members(cards, mesh)]
     deck = Deck(
         path=str(path),
         nodes=mesh.nodes,
@@ -88,8 +90,9 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
         requests=requests(sifted.requests),
         modes=modes,
     )
+    gone = removed(groups, mesh, reasons)
     reasons.tell()
-    return deck
+    return without(deck, gone)
 
 
 def read_mesh_only(path: Path) -> Deck:

@@ -163,7 +163,7 @@ class Pair:
     """A contact pair or tie. overclosure: HARD, LINEAR, ...; adjust: a distance, "all" for every gap, node numbers, or None;
     clearance: the gap given for all of the surface, None for the one of the mesh; is_tie: of *TIE, with its position
     tolerance (None: the default, that of Abaqus where parameters are its); behaviour: of its
-    overclosure, where that has numbers; bilateral: NO SEPARATION."""
+    overclosure, where that has numbers; bilateral: NO SEPARATION; changing: its law is another one in later steps."""
 
     name: str
     slave: str
@@ -179,6 +179,7 @@ class Pair:
     of_abaqus: bool = False
     behaviour: Behaviour = ()
     bilateral: bool = False
+    changing: bool = False
 
 
 @dataclass(frozen=True)
@@ -220,7 +221,7 @@ class RigidBody:
 class Coupling:
     """Nodes, or those of a surface ("": none), that move with a reference node: as a rigid body in ``directions`` 1..6, or
     freely with its motion as their mean (distributing), by weights (n,) of the nodes or, None, by area; more: others of the
-    same reference."""
+    same reference; weighted: it is a *DISTRIBUTING COUPLING."""
 
     name: str
     distributing: bool
@@ -231,6 +232,7 @@ class Coupling:
     weights: NDArray[np.float64] | None
     place: Place
     more: tuple[Coupling, ...] = ()
+    weighted: bool = False
 
 
 @dataclass(frozen=True)
@@ -287,7 +289,8 @@ class Prescribed:
     """A value at keys: (node, direction) for supports and forces, (element, face) for pressures, (node,) for temperatures,
     (number of a pair, 0) for the overlap that contact allows; a temperature's ``vector`` begins with its slope along the
     normal of shells; face 0 with ``vector``: gravity on the element, or a
-    centrifugal force, a point of whose axis and its direction it has. amplitude: name, or "" for the ramp."""
+    centrifugal force, a point of whose axis and its direction it has. amplitude: name, or "" for the ramp; frozen: of a
+    support, held where it is as the step begins."""
 
     kind: str  # boundary | force | pressure | gravity | centrifugal | temperature | interference | shrink
     numbers: Numbers
@@ -296,6 +299,7 @@ class Prescribed:
     amplitude: str
     place: Place
     vector: tuple[float, ...] = (0.0, 0.0, 0.0)
+    frozen: bool = False
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -58,14 +59,31 @@ def split_steps(cards: Sequence[Card], reasons: Reasons) -> tuple[list[Card], li
     return outside, steps
 
 
-def amplitudes(cards: Iterable[Card], reasons: Reasons) -> dict[str, Amplitude]:
+def amplitudes(cards: Sequence[Card], reasons: Reasons) -> dict[str, Amplitude]:
     """Amplitudes by name in capitals."""
     result = {}
     for card in cards:
         if card.key == "AMPLITUDE":
             with reasons.gathered(defines=True):
                 result[card.need("NAME").upper()] = _amplitude(card)
+    for card in cards:
+        if card.has("TIME DELAY") and (known := result.get((card.get("AMPLITUDE") or "").upper())) is not None:
+            with reasons.gathered():
+                result[later(card)] = _delayed(known, card)
     return result
+
+
+def later(card: Card) -> str:
+    """The name of the amplitude that a card goes by, one with the TIME DELAY of the card where it has one."""
+    name = (card.get("AMPLITUDE") or "").upper()
+    return f" {name} later by {card.get('TIME DELAY')}" if card.has("TIME DELAY") else name  # blank: no name of a deck
+
+
+def _delayed(amplitude: Amplitude, card: Card) -> Amplitude:
+    delay = as_float(card.get("TIME DELAY") or "")
+    if delay is None:
+        raise card.error(f"TIMEDELAY: expected a time, got {card.get('TIME DELAY')!r}")
+    return replace(amplitude, points=tuple((time + delay, factor) for time, factor in amplitude.points))
 
 
 def _amplitude(card: Card) -> Amplitude:
@@ -151,11 +169,19 @@ def prescribed(card: Card, mesh: MeshCards, known: Mapping[str, Amplitude]) -> l
     amplitude = (card.get("AMPLITUDE") or "").upper()
     if amplitude and amplitude not in known:
         raise card.unknown(f"no *AMPLITUDE named {card.get('AMPLITUDE')!r}{nearest(amplitude, known)}")
+    if card.has("TIME DELAY") and not amplitude:
+        raise card.error("TIMEDELAY goes with AMPLITUDE; give one, or take TIME DELAY out")
     if card.get("LOAD CASE", "1") != "1":
         raise card.error("LOADCASE: imaginary parts belong to steady-state dynamics, which abut does not solve")
     if key(card.get("TYPE", "DISPLACEMENT") or "") != "DISPLACEMENT":
         raise card.error(f"TYPE={card.get('TYPE')}: only displacements can be prescribed in statics")
-    return [value for line in card.lines for value in _LINES[card.key](line, amplitude, mesh)]
+    amplitude = later(card)
+    found = [value for line in card.lines for value in _LINES[card.key](line, amplitude, mesh)]
+    if not card.has("FIXED"):
+        return found
+    if amplitude or any(value.value for value in found):
+        raise card.error("FIXED: nodes that are held where they are have neither a displacement nor an amplitude")
+    return [replace(value, frozen=True) for value in found]
 
 
 def _boundary(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed]:
@@ -165,10 +191,14 @@ def _boundary(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed]:
     name = line.text(1).upper()
     if name in NAMED_SUPPORTS:
         return [Prescribed("boundary", nodes, NAMED_SUPPORTS[name], 0.0, amplitude, line.place)]
+    thermal = {line.text(1), line.text(2)} & {"0", "11"}
+    if thermal:
+        raise line.error(
+            f"direction {min(thermal)} (temperature) belongs to heat transfer, which abut does not solve; give "
+            "temperatures by *TEMPERATURE"
+        )
     first = line.integer(1, "first direction")
     last = line.integer(2, "last direction", first)
-    if last == 11 or first == 11:
-        raise line.error("direction 11 (temperature) belongs to heat transfer, which abut does not solve")
     if not first <= last <= 6:
         raise line.error(f"directions {first} to {last}: expected numbers from 1 to 6, in order")
     value = line.number(3, "displacement", 0.0)
@@ -189,6 +219,11 @@ def _distributed(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed
     for number in elements.tolist():
         if number not in mesh.kinds:
             raise line.unknown(f"element {number} does not exist")
+    if label.endswith("NP"):
+        raise line.error(
+            f"{label} takes the pressure from a node of a network, which abut does not solve; give it as a number, with "
+            f"{label[:-2]}"
+        )
     if label == "GRAV":
         x, y, z = (line.number(i, "direction", 0.0) for i in (3, 4, 5))
         size = float(np.sqrt(x * x + y * y + z * z))

@@ -11,6 +11,7 @@ from abut.io.deck.cards import Card, key
 from abut.io.deck.elements import ELEMENTS, refusal
 from abut.io.deck.output_cards import REQUESTS
 from abut.io.deck.reasons import DeckError, Reasons
+from abut.io.deck.refused import PARAMETERS, PROCEDURES, REFUSED, RUBBER
 
 # Cards that are read, with the parameters that are read or change nothing in statics.
 READ: dict[str, tuple[str, ...]] = {
@@ -40,18 +41,19 @@ READ: dict[str, tuple[str, ...]] = {
     "NODAL THICKNESS": (),
     "NORMAL": (),
     "SHELL SECTION": ("ELSET", "MATERIAL", "ORIENTATION", "OFFSET", "NODAL THICKNESS", "COMPOSITE"),
-    "SOLID SECTION": ("ELSET", "MATERIAL", "ORIENTATION", "NODAL THICKNESS", "CONTROLS"),
-    "BOUNDARY": ("OP", "AMPLITUDE", "TYPE", "LOAD CASE"),
-    "CLOAD": ("OP", "AMPLITUDE", "LOAD CASE"),
-    "DLOAD": ("OP", "AMPLITUDE", "LOAD CASE"),
-    "DSLOAD": ("OP", "AMPLITUDE", "LOAD CASE"),
-    "TEMPERATURE": ("OP", "AMPLITUDE"),
+    "SOLID SECTION": ("ELSET", "MATERIAL", "ORIENTATION", "NODAL THICKNESS", "CONTROLS", "OFFSET"),
+    "BOUNDARY": ("OP", "AMPLITUDE", "TYPE", "LOAD CASE", "FIXED", "TIME DELAY"),
+    "CLOAD": ("OP", "AMPLITUDE", "LOAD CASE", "TIME DELAY"),
+    "DLOAD": ("OP", "AMPLITUDE", "LOAD CASE", "TIME DELAY"),
+    "DSLOAD": ("OP", "AMPLITUDE", "LOAD CASE", "TIME DELAY"),
+    "TEMPERATURE": ("OP", "AMPLITUDE", "TIME DELAY"),
     "INITIAL CONDITIONS": ("TYPE",),
     "AMPLITUDE": ("NAME", "TIME", "VALUE", "DEFINITION"),
     "CONTACT PAIR": ("INTERACTION", "TYPE", "ADJUST", "SMALL SLIDING", "CPSET", "MORTAR", "NO THICKNESS"),
     "SURFACE INTERACTION": ("NAME",),
     "FRICTION": ("ROUGH", "LAGRANGE", "ELASTIC SLIP", "SLIP TOLERANCE", "SHEAR TRACTION SLOPE"),
     "CHANGE FRICTION": ("INTERACTION",),
+    "CHANGE SURFACE BEHAVIOR": ("INTERACTION",),
     "SURFACE BEHAVIOR": ("PRESSURE-OVERCLOSURE", "PENALTY", "DIRECT", "AUGMENTED LAGRANGE", "NO SEPARATION"),
     "CONTACT": (),
     "CONTACT INCLUSIONS": ("ALL EXTERIOR",),
@@ -96,87 +98,12 @@ QUIET = (
     "PHYSICAL CONSTANTS", "VALUES AT INFINITY", "SELECT CYCLIC SYMMETRY MODES", "NO ANALYSIS",
 )  # fmt: skip
 
-PROCEDURES = {  # other than *STATIC: ignoring one leaves the whole step out
-    "BUCKLE": "buckling but as the only step",
-    "COMPLEX FREQUENCY": "complex eigenfrequencies",
-    "COUPLED TEMPERATURE-DISPLACEMENT": "heat transfer coupled with displacement",
-    "CRACK PROPAGATION": "crack propagation",
-    "DYNAMIC": "dynamics",
-    "ELECTROMAGNETICS": "electromagnetics",
-    "FEASIBLE DIRECTION": "optimisation",
-    "FREQUENCY": "eigenfrequencies but as the only step, or in the last one with *STEP, PERTURBATION (of the loaded state), "
-    "without loads, upper limit and STORAGE=YES, of cyclic symmetry with the nodal diameter 0",
-    "GREEN": "Green functions",
-    "HEAT TRANSFER": "heat transfer",
-    "MODAL DYNAMIC": "modal dynamics",
-    "SENSITIVITY": "sensitivities",
-    "STEADY STATE DYNAMICS": "steady-state dynamics",
-    "SUBSTRUCTURE GENERATE": "substructures",
-    "UNCOUPLED TEMPERATURE-DISPLACEMENT": "heat transfer coupled with displacement",
-    "VISCO": "creep and viscosity",
-}
-
-_MATERIAL = "; abut's solids are linear elastic, plastic or, with NLGEOM, neo-Hookean"
-_RUBBER = "this kind of rubber elasticity is not supported; fit MOONEY-RIVLIN, YEOH, OGDEN or ARRUDA-BOYCE"
-_WRITE = "; have the preprocessor write out every node and element"
-REFUSED: dict[str, str] = {
-    "CFLUX": "heat flux belongs to heat transfer, which abut does not solve",
-    "CHANGE CONTACT TYPE": "contact that changes between steps is not supported; make a deck for each state",
-    "CHANGE MATERIAL": "materials that change between steps are not supported; make a deck for each state",
-    "CHANGE SURFACE BEHAVIOR": "contact that changes between steps is not supported; make a deck for each state",
-    "CHANGE SOLID SECTION": "materials that change between steps are not supported; make a deck for each state",
-    "COHESIVE BEHAVIOR": "cohesive contact is not supported",
-    "CONSTRAINT": "constraint functions belong to optimisation",
-    "CONTACT EXCLUSIONS": "exclusions are not read; name the surfaces that touch in *CONTACT PAIR",
-    "CREEP": f"creep is not supported{_MATERIAL}",
-    "DAMPING MODEL": "damping belongs to dynamics",
-    "DASHPOT": "dashpots are not supported; take them out",
-    "DEFORMATION PLASTICITY": "deformation theory is not supported; give *PLASTIC",
-    "DFLUX": "heat flux belongs to heat transfer, which abut does not solve",
-    "DISTRIBUTION": "distributions are not read; give numbers",
-    "ELGEN": f"generated elements are not read{_WRITE}",
-    "ELCOPY": f"generated elements are not read{_WRITE}",
-    "FILM": "heat films belong to heat transfer, which abut does not solve",
-    "GAP": "gap elements are not supported; use *CONTACT PAIR",
-    "HYPERFOAM": f"foam elasticity is not supported{_MATERIAL}",
-    "MASS": "point masses belong to dynamics",
-    "MEMBRANE SECTION": "membranes are not supported; model the part with solid elements",
-    "MODAL DAMPING": "damping belongs to dynamics",
-    "MULTI-STAGE CYCLIC SYMMETRY": "multistage cyclic symmetry is not supported; model one sector",
-    "NCOPY": f"generated nodes are not read{_WRITE}",
-    "NFILL": f"generated nodes are not read{_WRITE}",
-    "NGEN": f"generated nodes are not read{_WRITE}",
-    "RADIATE": "radiation belongs to heat transfer, which abut does not solve",
-    "RATE DEPENDENT": f"rates are not supported{_MATERIAL}",
-    "REFINE MESH": "refinement is not supported; refine the mesh in the preprocessor",
-    "SUBMODEL": "submodels are not supported; give the displacements with *BOUNDARY",
-    "SYSTEM": f"nodes in a system of their own are not read{_WRITE}",
-    "USER MATERIAL": f"user materials are not supported{_MATERIAL}",
-    "VISCOELASTIC": f"viscosity is not supported{_MATERIAL}",
-} | {name: f"abut solves *STATIC steps only, not {words}" for name, words in PROCEDURES.items()}
-
-_PARAMETERS = {  # reasons for parameters that are refused
-    ("STEP", "PERTURBATION"): "perturbation steps are not supported; give all loads of the state in one step",
-    ("STATIC", "RIKS"): "arc-length steps are not supported",
-    (
-        "BOUNDARY",
-        "FIXED",
-    ): "supports frozen in the last state are not supported; give the displacement, or keep the force",
-    ("SPRING", "ORIENTATION"): "axes of its own are not read; give springs along the global axes, or SPRINGA",
-    ("TIE", "MULTISTAGE"): "multistage ties are not supported",
-    ("COUPLING", "INFLUENCERADIUS"): "a radius is not read; give a surface of the nodes that it holds",
-    ("FRICTION", "TAUMAX"): "a largest shear stress is not read; give the coefficient over pressure, line by line",
-    ("FRICTION", "EXPONENTIALDECAY"): "a coefficient over the slip rate is not supported; give one",
-    ("FRICTION", "ANISOTROPIC"): "friction that depends on the direction is not supported; give one coefficient",
-    ("FRICTION", "DEPENDENCIES"): "a coefficient over field variables is not supported; give one",
-    ("FRICTION", "USER"): "user subroutines are not read",
-    ("CHANGE FRICTION", "AMPLITUDE"): "a coefficient over time within a step is not read; it changes as a step begins",
-}
 GENERATED = {  # nodes and elements that do not stand in the deck, or under numbers of their own
     key(name) for name in ("ELCOPY", "ELGEN", "NCOPY", "NFILL", "NGEN", "SYSTEM")
 }
 NEEDED = {  # leaving these out would leave no deck
     *GENERATED,
+    key("BEAM GENERAL SECTION"),
     key("MEMBRANE SECTION"),
 }
 
@@ -187,7 +114,13 @@ RESTART = (
 )
 MAY_BE_OMITTED = {"NLGEOM"}  # parameters that are read, and may be left out all the same
 COUPLINGS = {"COUPLING", "KINEMATIC", "DISTRIBUTING", "KINEMATICCOUPLING", "DISTRIBUTINGCOUPLING"}
-LEFT_OUT = {"FRICTION", "CHANGEFRICTION", "SPRING", *COUPLINGS}  # cards that are read, and may be left out all the same
+LEFT_OUT = {
+    "FRICTION",
+    "CHANGEFRICTION",
+    "CHANGESURFACEBEHAVIOR",
+    "SPRING",
+    *COUPLINGS,
+}  # cards that are read, and may be left out all the same
 _READ = {key(name): {key(p) for p in parameters} for name, parameters in READ.items()}
 _QUIET = {key(name) for name in QUIET}
 _REFUSED = {key(name): (name, reason) for name, reason in REFUSED.items()}
@@ -325,7 +258,10 @@ def _parameters(card: Card, asked: set[str], ignored: dict[str, list[str]], foun
         else:
             rubber = card.key == "HYPERELASTIC"
             cure = "" if rubber or card.key in WRITTEN else name
-            reason = _PARAMETERS.get((_name(card), name), _RUBBER if rubber else "abut does not know this parameter")
+            reason = PARAMETERS.get(
+                (_name(card), name),
+                RUBBER if rubber else "abut does not know this parameter; take it out if it is not needed",
+            )
             found.setdefault(f"{card.key} {name}", card.refusal(f"{name}: {reason}", cure))
 
 
@@ -336,7 +272,7 @@ def _name(card: Card) -> str:
 def _check_asked(ignore: Collection[str], cards: tuple[Card | _Step, ...]) -> None:
     present = {card.key for card in cards if isinstance(card, Card)}
     parameters = {name for card in cards if isinstance(card, Card) for name in card.parameters}
-    parameters |= {parameter for _, parameter in _PARAMETERS} | MAY_BE_OMITTED
+    parameters |= {parameter for _, parameter in PARAMETERS} | MAY_BE_OMITTED
     for name in ignore:
         wanted = key(name.lstrip("*"))
         if wanted in _READ and wanted not in parameters | LEFT_OUT:

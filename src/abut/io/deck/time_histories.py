@@ -122,6 +122,8 @@ def course_within(
 ) -> list[tuple[float, float]]:
     """Points of a course within a step, with the one at its beginning."""
     end = start + step.period
+    if value.frozen:
+        return [(start, before), (end, before)]
     if not value.amplitude:
         return [(start, before), (end, size)]
     amplitude = deck.amplitudes[value.amplitude]

@@ -75,7 +75,7 @@ def expand(points: Vector, shells: Sequence[Shell]) -> Expanded:
 def _normals(points: Vector, shell: Shell, which: int) -> tuple[Vector, NDArray[np.bool_]]:
     """Unit normals (n, k, 3) at the nodes of each cell, and which (n, k) of them were given."""
     x = points[shell.cells]
-    slopes = _slopes(shell.kind)
+    slopes = slopes_at_nodes(shell.kind)
     along = np.einsum("akd,nkx->nadx", slopes, x)
     result = np.cross(along[:, :, 0], along[:, :, 1])
     size = np.linalg.norm(result, axis=2, keepdims=True)
@@ -89,7 +89,7 @@ def _normals(points: Vector, shell: Shell, which: int) -> tuple[Vector, NDArray[
     return result, given
 
 
-def _slopes(kind: str) -> Vector:
+def slopes_at_nodes(kind: str) -> Vector:
     """Derivatives (nodes, functions, 2) of the shape functions of a quadratic cell at its nodes, from its monomials."""
     at = reference_nodes(kind)
     powers = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)] + ([(2, 1), (1, 2)] if kind == "quad8" else [])

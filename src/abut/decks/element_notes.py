@@ -1,0 +1,43 @@
+"""Where elements of abut answer otherwise than those of a deck, beyond what their types say."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from abut.io.deck.record import Block, Deck
+from abut.io.deck.time_histories import courses
+
+SLENDER = 3.0  # longest over shortest edge: from there on bending of b-bar cells is too stiff by a fifth and more
+EDGES = ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7))
+
+
+def element_notes(deck: Deck) -> list[str]:
+    """C3D8I that are thin, which lock in bending here; C3D20 that are warm, which CalculiX takes otherwise."""
+    return [note for block in deck.blocks for note in (*_thin(deck, block), *_warm(deck, block))]
+
+
+def _thin(deck: Deck, block: Block) -> list[str]:
+    if block.code not in ("C3D8I", "C3D8IH"):
+        return []
+    x = deck.points[np.searchsorted(deck.nodes, block.nodes)]
+    lengths = np.stack([np.linalg.norm(x[:, a] - x[:, b], axis=1) for a, b in EDGES])
+    slender = lengths.max(axis=0) > SLENDER * lengths.min(axis=0)
+    if not slender.any():
+        return []
+    return [
+        f"{block.code}: {slender.sum()} of {len(slender)} elements are more than {SLENDER:g} times as long as thick: where "
+        "they bend they are far too stiff without incompatible modes; mesh what bends with C3D20R"
+    ]
+
+
+def _warm(deck: Deck, block: Block) -> list[str]:
+    if block.code != "C3D20":
+        return []
+    changes = courses(deck, "temperature", lambda key: deck.initial.get(int(key[0]), 0.0))
+    values = [tuple(changes.get((node, 0), ())) for node in np.unique(block.nodes).tolist()] if changes else []
+    if len(set(values)) <= 1:
+        return []
+    return [
+        "C3D20 with temperatures that differ from node to node: they are quadratic between the nodes, in CalculiX linear; "
+        "with C3D20R both do the same"
+    ]

@@ -1,0 +1,17 @@
+"""Tables of the report about what bolts carry and how far fluids have got, where there are any."""
+
+from __future__ import annotations
+
+from abut.report import penetrations, preloads
+from abut.solution import Solution
+
+
+def carried_tables(solution: Solution) -> list[tuple[list[str], list[list[str]], str]]:
+    """Head, rows and title of each."""
+    found = []
+    if solution.model.preloads:
+        found.append((preloads.HEAD, preloads.preload_rows(solution), "What preloads carry"))
+    if solution.model.penetrations:
+        rows = penetrations.penetration_rows(solution)
+        found.append((penetrations.HEAD, rows, "How far fluids have got into contacts, and what they exert"))
+    return found

@@ -1,0 +1,50 @@
+"""*MODEL CHANGE, TYPE=ELEMENT: what the first step removes is not there."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from decks.test_deck_multipoint import BLOCK
+
+import abut
+from abut.errors import InputError
+from models.decks import load, step
+
+# Of the block of 2 x 2 x 2 bricks, without Poisson's ratio, columns 1 by 1 at x = 0..1
+COLUMNS = BLOCK.replace("1000., .3", "1000., 0.") + "*BOUNDARY\nALL, 1, 2\n"
+PRESSED = ["*DLOAD", "5, P2, 10.", "6, P2, 10.", "7, P2, 10.", "8, P2, 10."]
+REMOVE = ["*MODEL CHANGE, TYPE=ELEMENT, REMOVE"]
+
+
+def test_what_is_removed_is_not_there(tmp_path: Path) -> None:
+    """The lower half of the block: pressures on the elements that are gone go with them, each pressed column is 1 high."""
+    pressed = ["*DLOAD", *(f"{e}, P2, 10." for e in range(1, 9))]
+    text = COLUMNS.replace("*BOUNDARY", "*SURFACE, NAME=LID\nE, S2\n*BOUNDARY", 1)
+    job = load(tmp_path, text + step(*REMOVE, "5, 6", "7, 8", *pressed))
+    assert any("4 elements are taken out from the beginning on" in note for note in job.notes)
+    solution = abut.solve(job.model)
+    points = solution.model.mesh.points
+    assert points[:, 2].max() == 1.0
+    assert solution.displacement[points[:, 2] == 1.0, 2] == pytest.approx(-10.0 / 1000.0, rel=1e-9)
+
+
+def test_a_set_of_elements_and_a_later_step(tmp_path: Path) -> None:
+    text = COLUMNS.replace("*NSET, NSET=BOTTOM", "*ELSET, ELSET=UPPER\n5,6,7,8\n*NSET, NSET=BOTTOM")
+    first = step(*REMOVE, "UPPER", "*DLOAD", "1, P2, 10.", "2, P2, 10.", "3, P2, 10.", "4, P2, 10.")
+    solution = abut.solve(load(tmp_path, text + first + step("*DLOAD", "E, P2, 20.")).model)
+    assert solution.displacement[:, 2].min() == pytest.approx(-20.0 / 1000.0, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("steps", "words"),
+    [
+        ((PRESSED, [*REMOVE, "5"]), r"elements that come, or that go after the first step.*make a deck for each state"),
+        (([*REMOVE, "5"], ["*MODEL CHANGE, TYPE=ELEMENT, ADD", "5"]), "elements that come, or that go"),
+        (([*REMOVE, "9"],), "element 9 does not exist"),
+        (([*REMOVE, "TOPS"],), "no element set named 'TOPS'"),
+    ],
+)
+def test_what_comes_or_goes_later_is_refused(steps: tuple[list[str], ...], words: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=words):
+        load(tmp_path, COLUMNS + "".join(step(*lines) for lines in steps))
