@@ -335,8 +335,8 @@ def _contacts(
     states = (PairState.of(*state, balance.factors, _now(end, state[0])) for state in found)
     pressures = shown.pressure if shown else (None,) * len(balance.pairs)
     return tuple(
-        contact_result(model.mesh, state.showing(model.mesh, pressure), residual, *beside_it)
-        for state, pressure, *beside_it in zip(states, pressures, around, earlier)
+        contact_result(model.mesh, state.showing(model.mesh, pressure), residual, beside_it, one_before)
+        for state, pressure, beside_it, one_before in zip(states, pressures, around, earlier)
     )
 
 
