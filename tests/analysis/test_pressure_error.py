@@ -72,7 +72,9 @@ def test_it_is_near_the_true_error(name: str) -> None:
     model, truth = HERTZ[name]
     solution = abut.solve(model())
     error, estimate = truth(solution), checked(solution).value
-    second = not any(cell in name for cell in ("quad4", "tri3", "hex8", "wedge6", "tet4"))
+    second = not any(
+        cell in name for cell in ("quad4", "hex8", "wedge6")
+    )  # tri3 and tet4 have pressures of second order
     assert error > (0.002 if second else 0.03)  # else there is nothing to estimate
     assert estimate > 0.3 * error
     assert estimate < (3.0 * error if error > 0.02 else 0.08)
@@ -135,7 +137,7 @@ def test_it_counts_where_the_pressure_is_largest() -> None:
 
 def test_the_cure_names_a_size() -> None:
     """Half of the facets in contact."""
-    solution = abut.solve(line("tri3", (8, 8)))
+    solution = abut.solve(replace(line("tri3", (8, 8)), kinematics="finite"))
     assert cure(checked(solution), solution).startswith(
         "refine both surfaces where they touch: facets of half the size (0.5)"
     )

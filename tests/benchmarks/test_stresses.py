@@ -24,7 +24,15 @@ def test_hertz_line(cell: str, n: int, limit: float) -> None:
 
 @pytest.mark.parametrize(
     ("cell", "n", "limit"),
-    [("quad4", 6, LINEAR), ("hex8", 6, LINEAR), ("tri6", 6, SECOND), ("quad8", 6, SECOND), ("quad8", 12, SECOND)],
+    [
+        ("tri3", 6, LINEAR),
+        ("tri3", 12, LINEAR),
+        ("quad4", 6, LINEAR),
+        ("hex8", 6, LINEAR),
+        ("tri6", 6, SECOND),
+        ("quad8", 6, SECOND),
+        ("quad8", 12, SECOND),
+    ],
 )
 def test_hertz_ball(cell: str, n: int, limit: float) -> None:
     """The largest shear is told by nodes only where a cell is small beside its depth, or of second order."""
@@ -34,7 +42,9 @@ def test_hertz_ball(cell: str, n: int, limit: float) -> None:
     assert abs(errors["shear"]) < SHEAR or limit == LINEAR
 
 
-@pytest.mark.parametrize(("cell", "n", "limit"), [("quad4", 8, LINEAR), ("quad8", 6, SECOND), ("tri6", 6, SECOND)])
+@pytest.mark.parametrize(
+    ("cell", "n", "limit"), [("tri3", 8, SECOND), ("quad4", 8, LINEAR), ("quad8", 6, SECOND), ("tri6", 6, SECOND)]
+)
 def test_lame_press_fit(cell: str, n: int, limit: float) -> None:
     """On the planes of symmetry too, where the chord of the last facet is not normal to the radius."""
     errors = fit_errors(abut.solve(press_fit(cell, n)))

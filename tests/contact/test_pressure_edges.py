@@ -86,7 +86,8 @@ def test_continuous_positive_and_of_the_right_resultant(name: str) -> None:
     values[at.corners[corners]] = contact.pressure[corners]
     if name != "curved":  # flat: averages over its facets
         # Sums of averages are it; those of values of second order nearly, where a root ends within a facet.
-        close = 3e-2 if name in ("flat, opens", "flat under a curved target") else 1e-12
+        # With four triangles on the radius of a ball those of the exact pressure are 2 % more.
+        close = {"flat, opens": 3e-2, "flat under a curved target": 3e-2, "tetrahedra": 5e-2}.get(name, 1e-12)
         force = float(
             own.coupling.weight.ravel() @ np.nan_to_num(contact.multiplier).ravel()
         )  # normals lean under a round target

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from abut.analysis.certificate import NOTHING, Surroundings, certificate
 from abut.analysis.friction import friction_balance, friction_checks, friction_forces, friction_result
+from abut.analysis.interpolation_error import of_simplices
 from abut.analysis.sides import sides_check
 from abut.analysis.statistics import (
     LOADED,
@@ -47,7 +48,9 @@ from abut.solution.state import OPEN
 class PairState:
     """A pair with its multipliers, their status, and the slips (n, 4) of those of friction, as in its history; limit:
     of the tangential traction, None without friction; pressure, weight int H_k, weighted gap and contact of the multipliers
-    that are pressures (of a tie: all); contactor: where it is now, which that of a tie's pair is not."""
+    that are pressures (of a tie: all); contactor: where it is now, which that of a tie's pair is not; mended: (9 n_facets,)
+    facet-wise coefficients of the pressure that is shown in place of the multipliers', of the same force, theory (Z12);
+    exact: (n_facets,) facets of first order on which its nodal forces are those of bodies, None for none."""
 
     pair: Pair
     multipliers: NDArray[np.float64]
@@ -59,6 +62,8 @@ class PairState:
     gap: NDArray[np.float64]
     closed: NDArray[np.bool_]
     contactor: Surface
+    mended: NDArray[np.float64] | None = None
+    exact: NDArray[np.bool_] | None = None
 
     @classmethod
     def of(
@@ -78,6 +83,10 @@ class PairState:
         pressure, weight, gap = (values[every] for values in (multipliers, pair.weight, gap))
         limit = pair.friction(factors) if pair.frictional else None
         return cls(pair, multipliers, status, slips, limit, pressure, weight, gap, status[every] != OPEN, contactor)
+
+    def showing(self, mesh: Mesh, pressure: NDArray[np.float64] | None) -> PairState:
+        """The same that shows a ``mended`` pressure; None: its own."""
+        return self if pressure is None else replace(self, mended=pressure, exact=of_simplices(mesh, self.contactor))
 
     @cached_property
     def values(self) -> NDArray[np.float64]:
@@ -131,7 +140,7 @@ def contact_result(
     forces, others = state.forces
     ids, target_ids = pair.contactor.node_ids, pair.target.node_ids
     covered = coupling.segments > 0
-    at = averages(pair.contactor, coupling) if pair.contact.method == METHODS[0] else None
+    at = averages(pair.contactor, coupling, state.exact) if pair.contact.method == METHODS[0] else None
     raw = facet_node_values(pair.contactor, degree, state.normal)
     shown = None if at is None else reported(state, at)
     nodal = raw if shown is None else shown.nodal
@@ -269,14 +278,15 @@ def _statistics(
 def reported(state: PairState, at: Averages) -> Recovery:
     """The pressure at points and at the facets' nodes: from averages of facet-wise coefficients, theory (P10), values at
     points, theory (P18); of cells of first order averages, sharpened where ordinary continuous functions are in contact all
-    over, theory (P12), else with those on planes of symmetry mended, theory (P14)."""
-    pair, average = state.pair, at.of(state.normal)
+    over, theory (P12), else with those on planes of symmetry mended, theory (P14); but for facets that are ``exact``."""
+    pair, average = state.pair, at.of(state.normal if state.mended is None else state.mended)
     plain, smooth = average, pair.tied or bool(state.closed.all() and pair.space.continuous and pair.space.ordinary)
-    if smooth:
+    if smooth and not at.exact.all():
         sharp = at.sharpened(average, at.surface.points, _places(pair, at.surface, True).along)
         plain, smooth = (sharp, True) if pair.two_way or sharp.min() >= 0.0 else (average, False)
     if pair.planes is not None:
-        plain = evened(pair.contactor, at, plain, pair.planes, smooth)
+        planes = replace(pair.planes, uneven=pair.planes.uneven & ~at.exact)
+        plain = evened(pair.contactor, at, plain, planes, smooth)
     places = _places(pair, at.surface, smooth)
     return recovered(at, average, plain, places, pair.two_way)
 

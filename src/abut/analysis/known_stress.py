@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from abut.analysis.surface_slopes import SurfacePoints, surface_stress
 from abut.bodies.bearing import bearing_direction, bearing_pressure
 from abut.bodies.mirror import mirrors
-from abut.bodies.recovery import Equations
+from abut.bodies.recovery import Equations, no_equations
 from abut.bodies.solids import TemperatureChange
 from abut.cells import MAX_FACET_NODES
 from abut.contact.geometry import area_vectors, full_moments, split_at_creases
@@ -83,10 +83,7 @@ def known_stress(
 ) -> Equations:
     """Equations for the stress at the end of a step. points: (n_points, dim) where they are now; displacement: (n_points,
     dim)."""
-    skin = _Skin.of(model, points)
-    factors = dict(zip(model.histories, weights(model.histories, time)))
-    for load in model.loads:
-        _add_load(model, skin, load, factors[load.amplitude])
+    skin = _loaded(model, points, time)
     for pair, contact in contacts:
         _add_contact(skin, pair, contact)
     _add_supports(model, skin)
@@ -99,6 +96,24 @@ def known_stress(
     )  # fmt: skip
     stress, found = surface_stress(model.deformable, still, displacement, temperature, at)
     return _equations(model, skin, pieces, whole[found], stress[found])
+
+
+def mirrored(model: Model, points: Vector, time: float, pairs: Sequence[Pair]) -> Equations:
+    """The same without equations: planes of symmetry alone."""
+    skin, of = _loaded(model, points, time), model.deformable.patches
+    for side in (side for pair in pairs for side in (pair.contactor, pair.target)):
+        skin.source[skin.find(side)[1]] = 1
+    _add_supports(model, skin)
+    planes, bare = _planes(of, skin)
+    return replace(no_equations(of, model.dim), planes=planes, normals=np.eye(model.dim), bare=bare)
+
+
+def _loaded(model: Model, points: Vector, time: float) -> _Skin:
+    skin = _Skin.of(model, points)
+    factors = dict(zip(model.histories, weights(model.histories, time)))
+    for load in model.loads:
+        _add_load(model, skin, load, factors[load.amplitude])
+    return skin
 
 
 def _add_load(model: Model, skin: _Skin, load: Load, factor: float) -> None:

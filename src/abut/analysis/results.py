@@ -15,6 +15,7 @@ from abut.analysis.energy import Acting, energy, pressing, tractions
 from abut.analysis.faceting import free_axes
 from abut.analysis.finite_energy import FiniteActing, finite_energy
 from abut.analysis.flow import flow, remembered
+from abut.analysis.interpolation_error import Mended
 from abut.analysis.known_stress import known_stress
 from abut.analysis.moved import largest_turn, slid
 from abut.analysis.node_fields import node_fields
@@ -91,11 +92,11 @@ class _End:
 
 
 def step_result(
-    assembled: Assembled, attempt: Attempt, before: Sequence[Step], acted: Acted = None
+    assembled: Assembled, attempt: Attempt, before: Sequence[Step], acted: Acted = None, shown: Mended | None = None
 ) -> tuple[Step, Acted]:
     """Collect displacement, stress, reactions and contact results at the end of a load step, ``before`` being the others,
     and with friction or finite kinematics what acts there, for the energy of the next step; acted: the same of the step
-    before.
+    before; shown: what pressures and stresses are shown from.
 
     Raises SingularModelError for displacements that no units explain."""
     end = _end(assembled, attempt)
@@ -103,13 +104,13 @@ def step_result(
     model, constraints, springs = problem.model, problem.constraints, problem.springs
     linked = np.zeros_like(end.reaction) if constraints.links is None else constraints.links.forces(end.reaction)
     by_supports = (end.reaction - linked).reshape(-1, model.dim)
-    sampled = assembled.bodies.stress(end.motion)
+    own, moved = assembled.bodies.stress(end.motion), end.nodal if shown is None else shown.displacement
     points = model.mesh.points if model.small_strains else model.mesh.points + end.nodal
     points, solids = np.ascontiguousarray(points), model.deformable
-    contacts = _contacts(end, attempt, before, averages(solids, sampled))
+    contacts = _contacts(end, attempt, before, averages(solids, shown.stress if shown else own), shown)
     change = heated(model, assembled.loaded, end.motion)
-    known = known_stress(model, points, end.nodal, state.time, change, list(zip(balance.pairs, contacts)))
-    values = recovered(solids, points, sampled, known)
+    known = known_stress(model, points, moved, state.time, change, list(zip(balance.pairs, contacts)))
+    values = recovered(solids, points, own, known)
     stress = at_points(solids.patches, values, len(points))
     told = _finite_energy if model.finite else _energy
     acting, work = told(end, attempt, acted, contacts, before)
@@ -145,7 +146,7 @@ def step_result(
         landed=_landed(state),
         turn=_turn(model, end.nodal),
         energy=work if strained else None,
-        stress_error=stress_error(solids, end.nodal, sampled, values, contacts) if strained else None,
+        stress_error=stress_error(solids, end.nodal, own, values, contacts) if strained else None,
         remembered={**remembered(solids, end.motion.history), **node_fields(problem, end.motion, state)},
         penetrations=penetration_results(problem, state, end.displacement),
         flow=end.flow,
@@ -301,7 +302,7 @@ def _preloads(end: _End, linked: NDArray[np.float64]) -> dict[str, PreloadResult
 
 
 def _contacts(
-    end: _End, attempt: Attempt, before: Sequence[Step], stress: NDArray[np.float64]
+    end: _End, attempt: Attempt, before: Sequence[Step], stress: NDArray[np.float64], shown: Mended | None
 ) -> tuple[ContactResult, ...]:
     """Of all pairs; stress: (n_points, 6) nodal averages."""
     balance, model, constraints = end.balance, end.problem.model, end.problem.constraints
@@ -331,11 +332,11 @@ def _contacts(
         [end.state.history.contact(pair.contact.name).slips for pair in balance.pairs],
     )  # fmt: skip
     earlier = before[-1].contacts if before else [None] * len(balance.pairs)
+    states = (PairState.of(*state, balance.factors, _now(end, state[0])) for state in found)
+    pressures = shown.pressure if shown else (None,) * len(balance.pairs)
     return tuple(
-        contact_result(
-            model.mesh, PairState.of(*state, balance.factors, _now(end, state[0])), residual, beside_it, one_before
-        )
-        for state, beside_it, one_before in zip(found, around, earlier)
+        contact_result(model.mesh, state.showing(model.mesh, pressure), residual, beside_it, one_before)
+        for state, pressure, beside_it, one_before in zip(states, pressures, around, earlier)
     )
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.analysis.deadline import Deadline
+from abut.analysis.interpolation_error import Mended, is_mended, mended
 from abut.analysis.limit_load import limit_load, yields
 from abut.analysis.linear_solvers import assembled_bodies, linear_solver, setting_up, solver_kind
 from abut.analysis.modes import check_modes, modes
@@ -22,6 +23,7 @@ from abut.model import Model
 from abut.model.conditions import weights
 from abut.model.offset import offsets
 from abut.model.side_choice import choices
+from abut.nonlinear.again import Again, prepared
 from abut.nonlinear.attempt import Attempt
 from abut.nonlinear.large_steps import LargeSteps
 from abut.nonlinear.march import Control, Stepper, march
@@ -76,6 +78,7 @@ class Run:
     parts: list[tuple[Attempt, Step]] = field(default_factory=list)  # of the step that is being solved
     ended: tuple[State, Attempt] | None = None  # the last one that converged, and where it began
     modes: tuple[ModesResult, ...] = ()
+    again: Callable[[], Again] | None = None  # what solves steps again, once there is something that solves them
 
     @classmethod
     def of(
@@ -177,6 +180,7 @@ class Run:
             stepper = LargeSteps(problem, self.solver, control)
         else:
             stepper = SmallSteps(problem, first, self.solver, control)
+            self.again = stepper.again
         for attempt in march(stepper, states, pace, control):
             self.clock.mark("solve")
             ends = (0, 0) if self.model.finite else (attempt.number - 1, count)
@@ -236,13 +240,32 @@ class Run:
 
     def _result(self, attempt: Attempt, sized: bool = True) -> Step:
         before = [*self.steps, *(step for _, step in self.parts)]
-        step, self.acted = step_result(self.assembled, attempt, before, self.acted)
+        step, self.acted = step_result(self.assembled, attempt, before, self.acted, self._mended(attempt))
         if sized:
             _check_size(self.model, step.displacement, self.told.note)
         if attempt.converged:
             began = self.assembled.problem.start() if self.ended is None else self.ended[1].state
             self.ended = began, replace(attempt, balance=None)
         return replace(step, probes=tuple(read(place, step) for place in self.places))
+
+    def _mended(self, attempt: Attempt) -> Mended | None:
+        """What is shown of a step with triangles or tetrahedra of first order."""
+        problem = self.assembled.problem
+        if not attempt.converged or not is_mended(problem):
+            return None
+        if self.again is None:
+            ready = prepared(problem, self.solver, attempt.state, self.settings)
+            self.again = lambda: ready
+        try:
+            found = mended(self.assembled, attempt, self.again().under)
+        except (NotConverged, SingularModelError):
+            found = None
+        if found is None:
+            self.told.note(
+                f"step {attempt.number}: pressures and stresses of triangles and tetrahedra of first order are shown as "
+                "they are solved: contact was not found again under the forces that their straight displacements leave"
+            )
+        return found
 
     def _end(self, attempt: Attempt) -> None:
         """Results of an attempt; those of the parts of a step when it is whole, or when nothing follows them."""

@@ -59,28 +59,63 @@ def recovered(solids: Solids, points: Array, stress: PointStress, known: Equatio
     of, dim = solids.patches, points.shape[1]
     if known is None:
         known = no_equations(of, dim)
-    used = list(PLANE) if dim == 2 else list(range(6))
+    used, fits = _used(dim), _fits(solids, points, stress, known)
+    result = np.zeros((len(of.point), 6))
+    result[:, used] = evaluate_patches(
+        np.ascontiguousarray(points[of.point]), of.blend.indptr.astype(np.int64), of.blend.indices.astype(np.int64),
+        of.blend.data, *fits,
+    )  # fmt: skip
+    value = np.zeros(len(points), dtype=np.int64)
+    value[of.point] = np.arange(len(of.point))
+    result[value[known.node][:, None], used] = known.given
+    return result
+
+
+def in_cells(solids: Solids, points: Array, stress: PointStress, known: Equations) -> list[Array | None]:
+    """Of each block of the mesh the mean of the polynomials of its cells' corners at the cells' nodes, (n, n_nodes, 6); None
+    for cells with other nodes than corners, or without a material. points, known: as in ``recovered``."""
+    of, dim = solids.patches, points.shape[1]
+    fits, patch = _fits(solids, points, stress, known), np.full(len(of.point), -1, dtype=np.int64)
+    patch[of.corner] = np.arange(len(of.corner))
+    result: list[Array | None] = []
+    for block, nodes in zip(solids.mesh.blocks, of.nodes):
+        if CELLS[block.kind].degree > 1 or not len(nodes) or (nodes < 0).all():
+            result.append(None)
+            continue
+        some = nodes[(nodes >= 0).all(axis=1)]
+        n, k = some.shape
+        values = np.zeros((*nodes.shape, 6))
+        found = evaluate_patches(
+            np.ascontiguousarray(points[of.point[some]].reshape(n * k, dim)), np.arange(0, n * k * k + 1, k),
+            np.repeat(patch[some], k, axis=0).ravel(), np.full(n * k * k, 1.0 / k), *fits,
+        )  # fmt: skip
+        full = np.zeros((n * k, 6))
+        full[:, _used(dim)] = found
+        values[(nodes >= 0).all(axis=1)] = full.reshape(n, k, 6)
+        result.append(values)
+    return result
+
+
+def _used(dim: int) -> list[int]:
+    return list(PLANE) if dim == 2 else list(range(6))
+
+
+def _fits(solids: Solids, points: Array, stress: PointStress, known: Equations) -> tuple[Array, Array, Array]:
+    """Middles, coefficients and metrics of the patches' polynomials, as ``evaluate_patches`` takes them."""
+    of, dim = solids.patches, points.shape[1]
     inner = (of.degree == 1) & ~known.bare
     centre = np.ascontiguousarray(points[of.point[of.corner]])
     images = image_cells(of.around, planes_of(known.planes, centre), dim)
     cells = _widened(of, inner | known.bare, images)
     coefficients, metrics = fit_patches(
-        _with_images(_samples(solids, points, stress, used), images),
+        _with_images(_samples(solids, points, stress, _used(dim)), images),
         (centre, cells.indptr.astype(np.int64), cells.indices.astype(np.int64),
          np.where(inner, 2, of.degree).astype(np.int32)),
         (known.planes, known.normals),
         (known.of.indptr.astype(np.int64), known.of.indices.astype(np.int64), known.x, known.coefficients, known.value),
         HEAVY,
     )  # fmt: skip
-    result = np.zeros((len(of.point), 6))
-    result[:, used] = evaluate_patches(
-        np.ascontiguousarray(points[of.point]), of.blend.indptr.astype(np.int64), of.blend.indices.astype(np.int64),
-        of.blend.data, centre, coefficients, metrics,
-    )  # fmt: skip
-    value = np.zeros(len(points), dtype=np.int64)
-    value[of.point] = np.arange(len(of.point))
-    result[value[known.node][:, None], used] = known.given
-    return result
+    return centre, coefficients, metrics
 
 
 def at_points(of: Patches, values: Array, n_points: int) -> Array:
@@ -109,7 +144,7 @@ def energies(solids: Solids, points: Array, stress: PointStress, values: Array) 
     """Of each cell (n_cells, 3) int e C^-1 e of the recovered less the element's stress, the same of the recovered one, and
     the volume; theory (Z6). values: (n_values, 6)."""
     of, result = solids.patches, np.zeros((solids.mesh.n_cells, 3))
-    compliance, which = _compliances(solids)
+    compliance, which = compliances(solids)
     for group, at in zip(solids.groups(), stress):
         rule = error_rule(group.kind)
         shapes, derivatives = shape_functions(CELLS[group.kind].code, np.ascontiguousarray(rule[0]))
@@ -126,7 +161,7 @@ def _own(solids: Solids, of: Patches, group: Group) -> NDArray[np.int32]:
     return np.ascontiguousarray(of.nodes[block][group.cells - solids.mesh.starts[block]])
 
 
-def _compliances(solids: Solids) -> tuple[Array, NDArray[np.int32]]:
+def compliances(solids: Solids) -> tuple[Array, NDArray[np.int32]]:
     """(k, 6, 6) at rest, and which each cell has, (n_cells,): that of its body, or one in its own middle."""
     which = solids.body_of.copy()
     found = []

@@ -313,7 +313,24 @@ def _on_planes(normals: Array, plain: Surface, points: NDArray[np.int64], rim: N
     here = rim[number]
     leans = np.abs(np.einsum("na,na->n", unit[here], directions)) <= turn[here]
     leans &= turn[here] > ROUNDING
+    leans[leans] = ~_goes_on(plain, here[leans], directions[leans])
     return Held(here[leans], directions[leans])
+
+
+def _goes_on(plain: Surface, points: NDArray[np.int64], directions: Array) -> NDArray[np.bool_]:
+    """Whether facets at points (n,) lie on both sides of planes through them with normals (n, dim), as of a body that is
+    held in its middle: it has no image there."""
+    used = plain.nodes >= 0
+    facet, local = np.nonzero(used)
+    has = sp.csr_matrix((np.ones(len(facet)), (plain.nodes[facet, local], facet)), (len(plain.points), len(plain)))
+    around = (has[points] @ has.T).tocoo()
+    level = ((plain.points[around.col] - plain.points[points[around.row]]) * directions[around.row]).sum(axis=1)
+    far = np.zeros(len(points))
+    np.maximum.at(far, around.row, np.abs(level))
+    beyond = [np.zeros(len(points), dtype=bool) for _ in range(2)]
+    for side, sign in zip(beyond, (1.0, -1.0)):
+        side[around.row[sign * level > ROUNDING * far[around.row]]] = True
+    return np.asarray(beyond[0] & beyond[1])
 
 
 def _inside(normals: Array, at: Held) -> Array:

@@ -38,7 +38,8 @@ class Averages:
     corners: (n_facets, 9) point of each corner of the facets, -1 where padded; moments: (n_facets, 9, 9) int N_i H_k over
     the covered part, mass: (n_facets, 9, 9) int N_i N_j; weight: (n_points,) int N_i there, area; share: (n_points,) the
     same over int N_i on the whole contactor, 0 at points that are no corners of it; shared: (n_points,) the point whose
-    average each one shows, itself but on the axis of linear cells.
+    average each one shows, itself but on the axis of linear cells; exact: (n_facets,) facets of first
+    order with nodal forces as accurate as on those of second.
     """
 
     surface: Surface
@@ -48,6 +49,7 @@ class Averages:
     weight: NDArray[np.float64]
     share: NDArray[np.float64]
     shared: NDArray[np.int64]
+    exact: NDArray[np.bool_]
 
     def loads(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """int N_i f of a field given by its coefficients (9 n_facets, ...), at the points, (n_points, ...)."""
@@ -120,8 +122,10 @@ def _divided(values: NDArray[np.float64], weight: NDArray[np.float64]) -> NDArra
     return np.asarray(np.where(weight > 0.0, values / np.where(weight > 0.0, weight, 1.0), 0.0))
 
 
-def averages(contactor: Surface, coupling: Coupling) -> Averages:
-    """What it takes to average fields on a contactor; coupling: of degree 1 or 2."""
+def averages(contactor: Surface, coupling: Coupling, exact: NDArray[np.bool_] | None = None) -> Averages:
+    """What it takes to average fields on a contactor; coupling: of degree 1 or 2; exact: as in ``Averages``, none if
+    None."""
+    exact = np.zeros(len(contactor), dtype=bool) if exact is None else exact
     contactor, _ = split_at_creases(contactor)
     corners = np.full(contactor.nodes.shape, -1, dtype=np.int64)
     moments, mass = np.zeros_like(coupling.mass), np.zeros_like(coupling.mass)
@@ -140,18 +144,25 @@ def averages(contactor: Surface, coupling: Coupling) -> Averages:
     )
     share = np.where(whole > 0.0, weight / np.where(whole > 0.0, whole, 1.0), 0.0)
     return Averages(
-        contactor, corners, moments, mass, np.where(share > NO_SUPPORT, weight, 0.0), share, _shared(contactor)
+        contactor,
+        corners,
+        moments,
+        mass,
+        np.where(share > NO_SUPPORT, weight, 0.0),
+        share,
+        _shared(contactor, exact),
+        exact,
     )
 
 
-def _shared(contactor: Surface) -> NDArray[np.int64]:
+def _shared(contactor: Surface, exact: NDArray[np.bool_]) -> NDArray[np.int64]:
     """Points on the axis of a body of revolution with linear cells show the average of their neighbour and themselves: their
     own nodal force is wrong by the order of h / a, since no linear cell has the radial displacement c(z) r, while the
     pressure is even in r."""
     shared = np.arange(len(contactor.points))
     if contactor.axisymmetric:
         for _, facets in ((k, f) for k, f in by_kind(contactor) if CELLS[k].degree == 1):
-            first, second = contactor.nodes[facets, :2].T.astype(np.int64)
+            first, second = contactor.nodes[facets[~exact[facets]], :2].T.astype(np.int64)
             radius = contactor.points[:, 0]
             touching = ON_AXIS * radius[contactor.node_ids].max()
             for here, other in ((first, second), (second, first)):

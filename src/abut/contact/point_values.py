@@ -206,9 +206,9 @@ def _any(one: Ids, flags: Flags, n: int) -> Flags:
 def _stars(at: Averages, closed: Flags, places: Places) -> _Stars:
     one, other = neighbours(at.surface)
     n, c = len(closed), at.surface.dim - 1
-    usable = closed & (np.abs(at.share - 1.0) <= WHOLE) & of_second_order(at.surface)
-    images = np.prod(1 + places.across.any(axis=2), axis=1)
-    enough = np.bincount(one, minlength=n) * images >= c + c * (c + 1) // 2
+    usable = closed & (np.abs(at.share - 1.0) <= WHOLE) & of_second_order(at.surface, at.exact)
+    count = np.bincount(one, _images(places.across, one, other), n)  # those on a plane are their own images
+    enough = count >= c + c * (c + 1) // 2
     even = ~_any(one, (~usable | places.ends)[other], n)  # an average beside a pressure without bound is no quadratic's
     inner = usable & enough & ~places.rim & even & (np.bincount(one, minlength=n) > 0)
     further = usable & ~inner & ~places.ends & _any(one, inner[other], n)

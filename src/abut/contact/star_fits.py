@@ -104,12 +104,12 @@ def neighbours(surface: Surface) -> tuple[Ids, Ids]:
     return one, other
 
 
-def of_second_order(surface: Surface) -> NDArray[np.bool_]:
-    """Points (n_points,) that no facet of first order belongs to."""
+def of_second_order(surface: Surface, exact: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Points (n_points,) that no facet of first order belongs to, but for those that are ``exact``, (n_facets,)."""
     result = np.ones(len(surface.points), dtype=bool)
     for kind, facets in by_kind(surface):
         if CELLS[kind].degree == 1:
-            result[surface.nodes[facets, : CELLS[kind].corners]] = False
+            result[surface.nodes[facets[~exact[facets]], : CELLS[kind].corners]] = False
     return result
 
 
@@ -194,7 +194,9 @@ def star_fits(surface: Surface, points: Ids, normals: Array, across: Array, of: 
     one, other = neighbours(surface)
     one, other = one[number[one] >= 0], other[number[one] >= 0]
     mirrors, there = _mirrors(across[points])
-    row, which = np.nonzero(there[number[one]])
+    same = np.abs(np.einsum("rka,rla->rkl", across[one], across[other])).max(axis=2) > 0.5
+    twice = np.stack([np.zeros(len(one), dtype=bool), same[:, 0], same[:, 1], same.any(axis=1)], axis=1)
+    row, which = np.nonzero(there[number[one]] & ~twice)  # what lies on a plane is its own image
     at, beside = number[one[row]], other[row]
     frame = tangents(normals[points])
     along = np.einsum("rka,rab->rkb", frame[at], mirrors[at, which])

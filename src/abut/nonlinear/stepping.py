@@ -9,6 +9,7 @@ import numpy as np
 
 from abut.linear.solver import LinearSolver, Prepared
 from abut.nonlinear.active_set import solve_step
+from abut.nonlinear.again import Again
 from abut.nonlinear.attempt import Attempt
 from abut.nonlinear.iteration import Increment
 from abut.nonlinear.load_step import load_step
@@ -28,6 +29,13 @@ class SmallSteps:
     def __init__(self, problem: ContactProblem, first: State, solver: LinearSolver, control: Control) -> None:
         self._problem, self._first, self._solver, self._control = problem, first, solver, control
         self._ready: tuple[Problem, Prepared] | None = None
+
+    def again(self) -> Again:
+        """What it takes to solve steps again."""
+        if self._ready is None:
+            self.prepare()
+        assert self._ready is not None
+        return Again(self._ready[0], self._solver, self._ready[1], self._control.limit, self._control.settings)
 
     def prepare(self) -> None:
         """As in ``Stepper``."""
