@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.bodies.loads import stress_load, surface_area
+from abut.dofs import n_places
 from abut.io.deck.faces import nodes_of_rows
 from abut.io.deck.groups import Groups, pieces
 from abut.io.deck.reasons import DeckError
@@ -50,7 +51,7 @@ def with_ties_by_node(deck: Deck, notes: list[str]) -> Deck:
         equations = _equations(deck, groups, pair, found[pair.master], mesh, bound)
         notes.append(
             f"{pair.place}: *TIE '{pair.name}': the surfaces look the same way, as bodies that lie in each other: its "
-            f"{len(equations) // mesh.dim} slave nodes are tied one by one, to the nearest points of the master"
+            f"{n_places(len(equations), mesh.dim)} slave nodes are tied one by one, to the nearest points of the master"
         )
         more += equations
         gone.append(pair)

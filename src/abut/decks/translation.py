@@ -94,10 +94,7 @@ def load_deck(path: Path, ignore: Collection[str] = (), soft: bool = False) -> T
 
 def translate(deck: Deck, soft: bool = False) -> Translation:
     """The model of a deck, one time axis over all its steps. Raises InputError for what a model cannot hold."""
-    if not deck.steps:
-        raise InputError("no *STEP with *STATIC in the deck, or none left; abut solves these")
-    if not deck.blocks:
-        raise InputError("the deck has no *ELEMENT cards of solids, shells or beams; add a body, even for springs")
+    _check_something_is_there(deck)
     reasons = Reasons()
     for error in unsupported(deck):
         reasons.add(error)
@@ -154,6 +151,13 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     )
     model, output = with_tables(model, deck, asked, notes), output_options(model, deck, notes)
     return Translation(model, tuple(notes), deck.ignored, laws, output)
+
+
+def _check_something_is_there(deck: Deck) -> None:
+    if not deck.steps:
+        raise InputError("no *STEP with *STATIC in the deck, or none left; abut solves these")
+    if not deck.blocks:
+        raise InputError("the deck has no *ELEMENT cards of solids, shells or beams; add a body, even for springs")
 
 
 def _steps(deck: Deck, finite: bool) -> SolveOptions:

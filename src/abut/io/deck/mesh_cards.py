@@ -94,8 +94,7 @@ def mesh_cards(cards: Iterable[Card], notes: list[str], reasons: Reasons) -> Mes
     node_sets, element_sets = Names(), Names()
     surfaces: dict[tuple[str, bool], Faces] = {}
     cards = tuple(cards)
-    named = (as_integer(card.get("NODE") or "") for card in cards if card.key == "PRE-TENSIONSECTION")
-    virtual = frozenset(number for number in named if number is not None)
+    virtual = _of_sections(cards)
 
     def read(card: Card) -> None:
         if card.key == "NODE":
@@ -113,13 +112,11 @@ def mesh_cards(cards: Iterable[Card], notes: list[str], reasons: Reasons) -> Mes
             members = _set(card, "element", element_sets, element_sets, elements)
             members = _present(card, "element", members, {*elements, *springs} if springs else elements, notes)
             element_sets.add(card.need("ELSET"), np.array([e for e in members.tolist() if e in elements], np.int64))
-        elif card.key == POINTS:
-            if card.get("ELSET"):
-                element_sets.add(card.need("ELSET"), np.empty(0, np.int64))  # no section of theirs counts
-        elif card.key == SPRINGS:
-            springs.update(number for line in card.lines if (number := as_integer(line.text(0))) is not None)
-            if card.get("ELSET"):
-                element_sets.add(card.need("ELSET"), np.empty(0, np.int64))  # of elements with a volume
+        elif card.key in (POINTS, SPRINGS):
+            if card.key == SPRINGS:
+                springs.update(number for line in card.lines if (number := as_integer(line.text(0))) is not None)
+            if card.get("ELSET"):  # of elements with a volume
+                element_sets.add(card.need("ELSET"), np.empty(0, np.int64))
         else:
             surface = _surface(card, node_sets, element_sets, elements)
             here = (surface.name.upper(), surface.nodes is not None)
@@ -149,6 +146,12 @@ def mesh_cards(cards: Iterable[Card], notes: list[str], reasons: Reasons) -> Mes
         frozenset(number for number, (code, _) in elements.items() if ELEMENTS[code].thin == "shell"),
         virtual,
     )
+
+
+def _of_sections(cards: Iterable[Card]) -> frozenset[int]:
+    """Nodes that stand for the shortening of pre-tension sections; they need no place."""
+    named = (as_integer(card.get("NODE") or "") for card in cards if card.key == "PRE-TENSIONSECTION")
+    return frozenset(number for number in named if number is not None)
 
 
 def _joined(one: Faces, other: Faces) -> Faces:
