@@ -34,7 +34,7 @@ def complex_frequencies(
     factors = UnsymmetricFactors((symmetric + slides.skew).tocsr(), held, slides.pushing)
     inverse, vectors = nearest(factors.solve, reduced, reduced.shape[0] - len(held.give), wanted.count + MORE)
     squares = shift + 1.0 / inverse
-    order = np.argsort(np.abs(squares), kind="stable")
+    order = np.lexsort((squares.imag, np.abs(squares)))  # of a pair the one that grows first
     order = order[: _whole_pairs(squares[order], wanted.count)]
     squares, inverse, vectors = squares[order], inverse[order], vectors[:, order]
     squares = np.where(np.abs(squares) <= ROUNDING * highest, 0.0, squares)
