@@ -8,8 +8,10 @@ from abut.bodies.stress_stiffness import stress_stiffness
 from abut.errors import InputError
 from abut.model import Buckling, Frequencies, Model
 from abut.modes.buckling import buckling
+from abut.modes.complex_frequencies import complex_frequencies
 from abut.modes.frequencies import frequencies
 from abut.modes.held import Held, held
+from abut.modes.sliding import sliding
 from abut.nonlinear.attempt import Attempt
 from abut.problem.assembly import Assembled
 from abut.solution import ModesResult
@@ -52,6 +54,8 @@ def modes(assembled: Assembled, before: State, attempt: Attempt) -> tuple[ModesR
         tight = there
         if stressed is not None and wanted.stiffening:
             tight = _stiffened(there, near.reduce(stressed))
+        if wanted.complex:
+            return complex_frequencies(problem.model, near, tight, sliding(system, state, there), wanted)
         return frequencies(problem.model, near, tight, wanted)
 
     return tuple(map(one, problem.model.modes))

@@ -6,6 +6,7 @@ RUN: dict[str, dict[str, str]] = {
     "FrequenciesTable": {
         "count": "how many, from the lowest",
         "stiffening": "whether stresses at the end of the last step change the stiffness; under finite kinematics always",
+        "complex": "whether friction of what slips follows the pressure: frequencies with rates of growth (squeal)",
     },
     "BucklingTable": {"count": "how many positive factors, from the smallest"},
     "SolveOptionsTable": {

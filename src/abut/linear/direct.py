@@ -102,32 +102,30 @@ def factorized(matrix: Sparse, *, definite: bool = False) -> Callable[[NDArray[n
 
 
 class Factorization:
-    """A symmetric matrix, given by its upper triangle (CSR, diagonal stored), factorised for several right-hand sides.
+    """A matrix (CSR, diagonal stored; of a ``symmetric`` one the upper triangle), factorised for several right-hand sides.
 
     quick: without refinement wherever the residual is small enough as it is. Refinement goes on to the last digit, and takes
     several times as long as the solution."""
 
-    def __init__(self, upper: Sparse, *, quick: bool = False) -> None:
-        self._matrix = upper
+    def __init__(self, matrix: Sparse, *, quick: bool = False, symmetric: bool = True) -> None:
+        self._matrix, self._symmetric = matrix, symmetric
         self._refinements = (0, SETTINGS[8]) if quick else (SETTINGS[8],)
-        self._solver = None if pardiso() is None else pardiso().PyPardisoSolver(mtype=SYMMETRIC_INDEFINITE)
+        self._solver = None if pardiso() is None else solver_of(symmetric, SETTINGS)
         if self._solver is None:
             return
-        for key, value in SETTINGS.items():
-            self._solver.iparm[key - 1] = value
         weakref.finalize(self, self._solver.free_memory, everything=True)
         self._sound = True
         try:
-            analyse(self._solver, upper, np.zeros(upper.shape[0]))
+            analyse(self._solver, matrix, np.zeros(matrix.shape[0]))
             self._solver.set_phase(22)
-            self._solver._call_pardiso(upper, np.zeros(upper.shape[0]))
+            self._solver._call_pardiso(matrix, np.zeros(matrix.shape[0]))
         except pardiso().pardiso_wrapper.PyPardisoError:
             self._sound = False
 
     @property
     def negative(self) -> int | None:
         """How many eigenvalues are negative, by the signs of the pivots; None where these do not tell."""
-        if self._solver is None or not self._sound:
+        if self._solver is None or not self._sound or not self._symmetric:
             return None
         return int(self._solver.iparm[22])
 
@@ -135,14 +133,14 @@ class Factorization:
         """As ``solve``, which takes over where the factors are not accurate. Raises SingularModelError."""
         size = np.abs(rhs).max(initial=0.0)
         if self._solver is None or not self._sound or size == 0.0:
-            return solve(self._matrix, rhs, symmetric=True)
+            return solve(self._matrix, rhs, symmetric=self._symmetric)
         self._solver.set_phase(33)
         for steps in self._refinements:
             self._solver.iparm[7] = steps
             x: NDArray[np.float64] = self._solver._call_pardiso(self._matrix, rhs / size)
-            if residual(self._matrix, x, rhs / size, True) < ACCURATE:
+            if residual(self._matrix, x, rhs / size, self._symmetric) < ACCURATE:
                 return size * x
-        return solve(self._matrix, rhs, symmetric=True)
+        return solve(self._matrix, rhs, symmetric=self._symmetric)
 
 
 def solver_of(symmetric: bool, settings: dict[int, int]) -> Foreign:

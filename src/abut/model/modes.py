@@ -13,8 +13,9 @@ MOST_MODES = 10_000
 class Frequencies:
     """Natural frequencies of the assembly as it is loaded at the end of the last load step.
 
-    Closed contact stays closed and what sticks sticks; what slips does so without friction along its surface; what is open
-    stays open. Supports and whatever else is prescribed are held. Every body needs the density of its material.
+    Closed contact stays closed and what sticks sticks; what slips does so without friction along its surface, or with
+    ``complex`` under friction that goes with the pressure; what is open stays open. Supports and whatever else is prescribed
+    are held. Every body needs the density of its material.
 
     Parameters
     ----------
@@ -22,6 +23,9 @@ class Frequencies:
         How many, from the lowest.
     stiffening : bool
         Whether stresses at the end of the last step change the stiffness. With kinematics "finite" they always do.
+    complex : bool
+        Whether friction of what slips follows the pressure as it vibrates: complex frequencies, of which some may grow
+        (squeal).
 
     Raises
     ------
@@ -37,11 +41,13 @@ class Frequencies:
 
     count: int = 10
     stiffening: bool = True
+    complex: bool = False
 
     def __post_init__(self) -> None:
         _check_count(self.count, "frequencies")
-        if not isinstance(self.stiffening, bool):
-            raise InputError(f"frequencies: stiffening: expected true or false, got {self.stiffening!r}")
+        for name, value in (("stiffening", self.stiffening), ("complex", self.complex)):
+            if not isinstance(value, bool):
+                raise InputError(f"frequencies: {name}: expected true or false, got {value!r}")
 
 
 @dataclass(frozen=True)

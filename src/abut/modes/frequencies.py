@@ -29,12 +29,12 @@ def frequencies(model: Model, constraints: Constraints, held: Held, wanted: Freq
     Raises InputError where no body has a density, ConvergenceError, and SingularModelError."""
     whole = mass(model.mesh, densities(model))
     reduced = constraints.reduce(whole)
-    fastest = _fastest(held.stiffness, reduced)
-    shift = -SHIFT * fastest if held.loose else 0.0
+    highest = fastest(held.stiffness, reduced)
+    shift = -SHIFT * highest if held.loose else 0.0
     shifted = Factors((held.stiffness - shift * reduced).tocsr() if shift else held.stiffness, held)
     moving = int((reduced.diagonal() > 0.0).sum())
     pencil = Pencil(shifted.solve, reduced, reduced, reduced.shape[0], min(moving, reduced.shape[0] - len(held.give)))
-    rounding = ROUNDING * fastest
+    rounding = ROUNDING * highest
     found, missing = _complete(pencil, held, shift, wanted.count, rounding)
     squares, vectors = shift + 1.0 / found.values, found.vectors
     squares = np.where(np.abs(squares) <= rounding, 0.0, squares)
@@ -68,7 +68,7 @@ def densities(model: Model) -> dict[str, float]:
     return found
 
 
-def _fastest(stiffness: Sparse, mass: Sparse) -> float:
+def fastest(stiffness: Sparse, mass: Sparse) -> float:
     """Square of the highest angular frequency, about: of points by themselves."""
     stiff, heavy = stiffness.diagonal(), mass.diagonal()
     return float(np.median(stiff[heavy > 0.0] / heavy[heavy > 0.0]))

@@ -25,12 +25,13 @@ Vector = NDArray[np.float64]
 class Held:
     """stiffness: (n_free, n_free) symmetric CSR, of bodies and real springs; rows: (m, n_free) of the gaps and slips
     that are held; give: (m,) what these give way by per multiplier, positive; loose: whether bodies move as a whole without
-    resistance."""
+    resistance; kept: (m,) which of the problem's multipliers these are."""
 
     stiffness: Sparse
     rows: Sparse
     give: Vector
     loose: bool
+    kept: NDArray[np.int64]
 
 
 def held(problem: ContactProblem, system: Linearised, state: State) -> Held:
@@ -50,8 +51,9 @@ def held(problem: ContactProblem, system: Linearised, state: State) -> Held:
             here, soft = _status(pair, closed, slipping), np.zeros(len(pair))
         kept.append(here)
         give.append(np.maximum(soft, HARD * pair.scale)[here])
-    rows = sp.csr_matrix(system.operator)[np.flatnonzero(np.concatenate(kept))]
-    return Held(stiffness, rows, np.concatenate(give), len(own) > 0 or _is_loose(rows, system.motions))
+    places = np.flatnonzero(np.concatenate(kept))
+    rows = sp.csr_matrix(system.operator)[places]
+    return Held(stiffness, rows, np.concatenate(give), len(own) > 0 or _is_loose(rows, system.motions), places)
 
 
 def _status(pair: Pair, closed: NDArray[np.bool_], slipping: NDArray[np.bool_]) -> NDArray[np.bool_]:

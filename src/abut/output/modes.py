@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 from abut.io.atomic import write_text
 from abut.io.vtu import write_vtu
 from abut.solution import ModesResult, Solution
+from abut.solution.modes import COMPLEX
 from abut.types import Json
 
 TABLE, SHAPES = "modes.csv", "modes.vtu"
-SINGULAR = {"frequencies": "frequency", "buckling": "buckling"}
+SINGULAR = {"frequencies": "frequency", "complex frequencies": "complex_frequency", "buckling": "buckling"}
 
 
 def names(solution: Solution, bodies: bool) -> list[str]:
@@ -61,6 +62,13 @@ def _one(result: ModesResult) -> Json:
             "participation": result.participation.tolist(), "effective_mass": result.effective.tolist(),
             "mass": result.mass.tolist(),
         }  # fmt: skip
+    if result.kind == COMPLEX:
+        found |= {
+            "orthogonality": None,
+            "growth": result.growth.tolist(),
+            "unstable": result.unstable.tolist(),
+            "slips": result.slips,
+        }
     return found
 
 
@@ -69,6 +77,8 @@ def _table(solution: Solution) -> str:
     head = ["kind", "mode", "value", "eigenvalue"]
     if any(len(result.mass) for result in solution.modes):
         head += [f"{name}_{a}" for name in ("participation", "effective_mass") for a in along]
+    if any(result.kind == COMPLEX for result in solution.modes):
+        head += ["growth_rate", "unstable"]
     text = io.StringIO()
     table = csv.DictWriter(text, head, lineterminator="\n")
     table.writeheader()
@@ -82,6 +92,8 @@ def _table(solution: Solution) -> str:
             }
             for name, values in (("participation", result.participation), ("effective_mass", result.effective)):
                 row |= {f"{name}_{a}": number for a, number in zip(along, values[i].tolist())}
+            if result.kind == COMPLEX:
+                row |= {"growth_rate": result.growth[i], "unstable": "yes" if result.unstable[i] else "no"}
             table.writerow(row)
     return text.getvalue()
 
@@ -91,7 +103,14 @@ def _shapes(solution: Solution) -> dict[str, NDArray[np.float64]]:
     for number, result in enumerate(solution.modes):
         again = sum(earlier.kind == result.kind for earlier in solution.modes[:number])
         for i, shape in enumerate(result.shapes):
-            spatial = np.zeros((len(shape), 3))
-            spatial[:, : shape.shape[1]] = shape / max(float(np.abs(shape).max(initial=0.0)), 1e-300)
-            arrays[f"{SINGULAR[result.kind]}{f'_{again + 1}' if again else ''}_{i + 1:04d}"] = spatial
+            name = f"{SINGULAR[result.kind]}{f'_{again + 1}' if again else ''}_{i + 1:04d}"
+            largest = max(float(np.abs(shape).max(initial=0.0)), 1e-300)
+            arrays[name] = _spatial(shape / largest)
+            if result.kind == COMPLEX:  # the motion a quarter of a period before
+                arrays[f"{name}_imaginary"] = _spatial(result.imaginary[i] / largest)
     return arrays
+
+
+def _spatial(shape: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Vectors (n, dim) in space, (n, 3)."""
+    return np.pad(shape, ((0, 0), (0, 3 - shape.shape[1])))

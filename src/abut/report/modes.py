@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from abut.solution import ModesResult, Solution
-from abut.solution.modes import FREQUENCIES
+from abut.solution.modes import COMPLEX, FREQUENCIES
 
 MOST = 200  # rows
 PER_LINE = 10
@@ -18,6 +18,8 @@ def modes_tables(solution: Solution) -> list[tuple[list[str], list[list[str]], s
 
 def mode_lines(result: ModesResult) -> list[str]:
     """For the terminal: what was found, a few numbers a line."""
+    if result.kind == COMPLEX:
+        return _complex_lines(result)
     shown = [f"{value:.6g}" for value in result.values[:MOST]]
     head = f"{result.kind} {'(cycles per time)' if result.kind == FREQUENCIES else '(factors)'}:"
     rows = [", ".join(shown[i : i + PER_LINE]) for i in range(0, len(shown), PER_LINE)]
@@ -25,8 +27,42 @@ def mode_lines(result: ModesResult) -> list[str]:
     return [f"{head} {rows[0]}", *(f"  {row}" for row in (*rows[1:], *more))]
 
 
+def stability(result: ModesResult) -> str:
+    """Of complex frequencies, in a line."""
+    if not result.slips:
+        return "nothing slips at the end of the last step, so friction makes none of them complex"
+    count = int(result.unstable.sum())
+    if not count:
+        return f"all {len(result)} stable"
+    worst = int(np.argmax(result.growth))
+    return (
+        f"{count} of {len(result)} unstable: the fastest grows at {result.growth[worst]:.6g} per time, "
+        f"frequency {result.values[worst]:.6g} (mode {worst + 1})"
+    )
+
+
+def _complex_lines(result: ModesResult) -> list[str]:
+    rows = [
+        f"  {value:.6g}, {growth:.6g}{', unstable' if unstable else ''}"
+        for value, growth, unstable in zip(result.values[:MOST], result.growth, result.unstable)
+    ]
+    more = [f"  and {len(result) - MOST} more, in modes.csv"] if len(result) > MOST else []
+    return [f"{result.kind} (cycles per time, rate of growth per time): {stability(result)}", *rows, *more]
+
+
+def _complex_table(result: ModesResult) -> tuple[list[str], list[list[str]], str]:
+    rows = [
+        [f"{i + 1}", f"{value:.6g}", f"{growth:.6g}", "unstable" if unstable else ""]
+        for i, (value, growth, unstable) in enumerate(zip(result.values[:MOST], result.growth, result.unstable))
+    ]
+    head = ["mode", "frequency (cycles per time)", "rate of growth (per time)", ""]
+    return head, rows, f"Complex frequencies about the end of the last step: {stability(result)}"
+
+
 def _table(solution: Solution, result: ModesResult) -> tuple[list[str], list[list[str]], str]:
     """Of the modes of a kind, the first ones where they are many."""
+    if result.kind == COMPLEX:
+        return _complex_table(result)
     if result.kind != FREQUENCIES:
         rows = [[f"{i + 1}", f"{value:.6g}"] for i, value in enumerate(result.values[:MOST])]
         return ["mode", "factor of the state's stresses"], rows, "Linear buckling about the end of the last step"

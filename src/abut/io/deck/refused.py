@@ -8,7 +8,10 @@ _DESIGN = "use *STATIC, and change the design from run to run (abut sweep)"
 PROCEDURES = {  # other than *STATIC: what each is, and what to do; ignoring one leaves the whole step out
     "BUCKLE": ("buckling but as the only step", "make a deck whose only step it is"),
     "CFD": ("flow", "solve the flow elsewhere and give its pressures by *DLOAD, its temperatures by *TEMPERATURE"),
-    "COMPLEX FREQUENCY": ("complex eigenfrequencies", "use *FREQUENCY for the real ones"),
+    "COMPLEX FREQUENCY": (
+        "complex eigenfrequencies",
+        "use *FREQUENCY for the real ones, or a job file (abut convert) with complex = true in [frequencies]",
+    ),
     "COUPLED TEMPERATURE-DISPLACEMENT": ("heat transfer coupled with displacement", _HEAT),
     "CRACK PROPAGATION": ("crack propagation", "use *STATIC for the body with the crack as it is"),
     "DYNAMIC": ("dynamics", "use *STATIC for what moves slowly or has come to rest"),
