@@ -1,4 +1,5 @@
-"""Beams of a deck expanded into solids, as CalculiX does it: as shells are (``decks.thin``), with a rectangular section.
+"""Beams of a deck expanded into solids, as CalculiX does it: as shells are (``decks.thin``), with a rectangular section
+or an elliptic one.
 
 A node where turns are held or prescribed, or a moment acts, is a coupling of its section: the mean motion of its corners (at
 large displacements, where turns are held, a rigid one)."""
@@ -8,24 +9,25 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from abut.decks.solid_blocks import by_block, free_numbers, sections_of, with_solids
 from abut.decks.thin import renamed
 from abut.io.deck.reasons import DeckError, Place
 from abut.io.deck.record import Block, Coupling, Deck, Equation, Numbers, Section, Thin
-from abut.mesh.thin.beams import COUNT, Beam, Sections, expand_beams
+from abut.mesh.thin.beams import CORNERS, COUNT, Beam, Sections, expand_beams
 
 CARD = "*BEAM SECTION"
-EDGES = ((4, 0, 1), (5, 1, 2), (6, 2, 3), (7, 3, 0))  # of a section: the middle of a side, and its corners
 
 
 def with_thick_beams(deck: Deck, finite: bool) -> Deck:
     """The deck with its beams expanded, its shells already are. ``finite``: at large displacements.
 
     Raises InputError for beams without a section or a length, and for nodes that shells have as well."""
-    blocks = [block for block in deck.blocks if block.type.thin == "beam"]
-    if not blocks:
+    if not any(block.type.thin == "beam" for block in deck.blocks):
         return deck
+    deck = replace(deck, blocks=tuple(part for block in deck.blocks for part in _round_apart(deck, block)))
+    blocks = [block for block in deck.blocks if block.type.thin == "beam"]
     rows = np.concatenate([np.searchsorted(deck.nodes, _ordered(block)) for block in blocks])
     sections = [section for block in blocks for section in _sections(deck, block)]
     beam = Beam(
@@ -33,6 +35,7 @@ def with_thick_beams(deck: Deck, finite: bool) -> Deck:
         np.array([section.axis for section in sections]),
         np.array([section.widths for section in sections]),
         np.array([section.offsets for section in sections]),
+        np.array([section.round for section in sections]),
     )
     try:
         solid = expand_beams(deck.points, beam)
@@ -57,11 +60,22 @@ def _sections(deck: Deck, block: Block) -> list[Section]:
     return result
 
 
+def _round_apart(deck: Deck, block: Block) -> list[Block]:
+    """Beams of round sections, where integration is reduced, as a block of their own with full integration, which
+    ``element_notes`` says."""
+    if block.type.thin != "beam" or block.type.integration != "reduced":
+        return [block]
+    curved = np.array([section.round for section in _sections(deck, block)])
+    parts = [(curved, replace(block.type, integration="full")), (~curved, block.type)]
+    return [replace(block, type=kind, ids=block.ids[on], nodes=block.nodes[on]) for on, kind in parts if on.any()]
+
+
 def _with_solids(deck: Deck, blocks: list[Block], solid: Sections, finite: bool) -> Deck:
     number = free_numbers(deck, len(solid.points), [solid.cells])
     made: dict[
         int, list[Numbers]
     ] = {}  # node -> the eight nodes of each of its sections, -1 for those that are not there
+    shares = dict(zip(deck.nodes[solid.node].tolist(), solid.shares))
     for i, point in enumerate(solid.node.tolist()):
         made.setdefault(int(deck.nodes[point]), []).append(number[COUNT * i : COUNT * (i + 1)])
     for node in made:
@@ -81,14 +95,12 @@ def _with_solids(deck: Deck, blocks: list[Block], solid: Sections, finite: bool)
         if len(nodes) > 1 or node in turned
     ]
     coupled = {coupling.reference for coupling in bound}
-    thin = {node: Thin(tuple(nodes[0][:4].tolist())) for node, nodes in made.items() if node not in coupled}
+    thin = {node: Thin(tuple(nodes[0][: len(CORNERS)].tolist())) for node, nodes in made.items() if node not in coupled}
     straight = [
-        Equation(((int(nodes[0][e]), k, 2.0), (int(nodes[0][a]), k, -1.0), (int(nodes[0][b]), k, -1.0)), place)
+        equation
         for coupling in bound
-        if coupling.distributing and coupling.reference in held and (nodes := made[coupling.reference])
-        for e, a, b in EDGES
-        if nodes[0][e] >= 0
-        for k in (1, 2, 3)
+        if coupling.distributing and coupling.reference in held
+        for equation in _straight(made[coupling.reference][0], shares[coupling.reference], place)
     ]
     return replace(
         new,
@@ -98,10 +110,21 @@ def _with_solids(deck: Deck, blocks: list[Block], solid: Sections, finite: bool)
     )
 
 
+def _straight(nodes: Numbers, shares: NDArray[np.float64], place: Place) -> list[Equation]:
+    """The points of a section beside its corners go with these."""
+    every, count = nodes.tolist(), len(CORNERS)
+    return [
+        Equation(((n, k, -1.0), *((c, k, w) for c, w in zip(every[:count], share) if w)), place)
+        for n, share in zip(every[count:], shares[count:].tolist())
+        if n >= 0
+        for k in (1, 2, 3)
+    ]
+
+
 def _coupling(node: int, nodes: list[Numbers], rigid: bool, place: Place) -> Coupling:
     """One section by its mean; several, or one whose turns are held at large displacements, as a rigid body."""
     mean = len(nodes) == 1 and not rigid
-    every = np.sort(nodes[0][:4]) if mean else np.unique(np.concatenate(nodes)[np.concatenate(nodes) >= 0])
+    every = np.sort(nodes[0][: len(CORNERS)]) if mean else np.unique(np.concatenate(nodes)[np.concatenate(nodes) >= 0])
     name = f"section {node}" if mean else f"knot {node}"
     return Coupling(name, mean, node, "", every, frozenset(range(1, 7)), None, place)
 

@@ -41,7 +41,9 @@ def with_thick_trusses(deck: Deck) -> Deck:
     widths = np.repeat(np.sqrt([section.thickness for section in sections])[:, None], 2, axis=1)
     rows = np.arange(own.size).reshape(own.shape)  # no bar shares a section with another
     try:
-        solid = expand_beams(points.reshape(-1, 3), Beam(rows, aside, widths, np.zeros_like(widths)))
+        solid = expand_beams(
+            points.reshape(-1, 3), Beam(rows, aside, widths, np.zeros_like(widths), np.zeros(len(rows), bool))
+        )
     except ValueError as error:
         number = np.concatenate([block.ids for block in blocks])[error.args[0]]
         raise DeckError(blocks[0].place, f"*ELEMENT: truss {number} has no length; mend the mesh") from None

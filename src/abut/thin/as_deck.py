@@ -23,6 +23,7 @@ from abut.io.deck.record import (
     Section,
     Step,
 )
+from abut.mesh.thin.beams import EVEN
 from abut.model.conditions import History
 from abut.thin.quadratic import Sorted
 from abut.thin.records import Shell, Thin
@@ -62,8 +63,19 @@ def as_deck(parts: Sorted, sections: Mapping[str, Thin], where: str) -> Deck:
 def _section(name: str, section: Thin, ids: Numbers) -> Section:
     if isinstance(section, Shell):
         return Section(name, ids, NOTHING, section.thickness, PLACE, offset=section.offset)
-    (a, b), (x, y, z), (first, second) = section.widths, section.direction, section.offsets
-    return Section(name, ids, NOTHING, 1.0, PLACE, widths=(a, b), axis=(x, y, z), offsets=(first, second))
+    (x, y, z), (first, second) = section.direction, section.offsets
+    a, b = section.widths or (2.0 * EVEN * (section.radius or 0.0),) * 2
+    return Section(
+        name,
+        ids,
+        NOTHING,
+        1.0,
+        PLACE,
+        widths=(a, b),
+        axis=(x, y, z),
+        offsets=(first, second),
+        round=section.widths is None,
+    )
 
 
 def _solids(parts: Sorted) -> Iterator[tuple[str, Numbers]]:

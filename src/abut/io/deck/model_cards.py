@@ -143,10 +143,12 @@ def _shell_section(
 def _beam_section(
     card: Card, mesh: MeshCards, known: Mapping[str, Material] | None, axes: Mapping[str, Card]
 ) -> Section:
-    """One *BEAM SECTION. Raises InputError for other sections than rectangles, and for widths that are none."""
-    if not key(card.get("SECTION", "RECT") or "").startswith("RECT"):  # CalculiX reads four letters
+    """One *BEAM SECTION. Raises InputError for other sections than rectangles and ellipses, and for widths that are none."""
+    kind = key(card.get("SECTION", "RECT") or "")[:4]  # CalculiX reads four letters
+    if kind not in ("RECT", "CIRC"):
         raise card.error(
-            f"SECTION={card.get('SECTION')}: only rectangles (RECT) are supported; model the part with shells or solids"
+            f"SECTION={card.get('SECTION')}: rectangles (RECT) and circles (CIRC) alone are supported; model the part with "
+            "shells or solids"
         )
     line = card.first("widths")
     first = line.number(0, "width")
@@ -166,7 +168,7 @@ def _beam_section(
             raise card.error(f"{name}={card.get(name)}: expected a number (over the width)")
         offsets.append(value)
     section = _of_elements(card, mesh, known, axes, 0.0)
-    return replace(section, widths=widths, axis=axis, offsets=(offsets[0], offsets[1]))
+    return replace(section, widths=widths, axis=axis, offsets=(offsets[0], offsets[1]), round=kind == "CIRC")
 
 
 def _of_elements(

@@ -1,4 +1,4 @@
-"""Line meshes with a rectangular section as hex20, one over the section.
+"""Line meshes with a rectangular or an elliptic section as hex20, one over the section.
 
 The section at a node lies across the mean tangent of the elements there, as far as these are within 20 degrees of each other
 and have the same section; others have a section of their own there, and the node is a knot, as for shells."""
@@ -18,6 +18,10 @@ CORNERS = np.array([[-1, 1], [-1, -1], [1, -1], [1, 1]]) / 2.0  # along n1 and n
 POINTS = np.vstack(
     [CORNERS, (CORNERS + np.roll(CORNERS, -1, axis=0)) / 2.0]
 )  # of a section: corners, edges between them
+ROUND = POINTS / (2.0 * np.linalg.norm(POINTS, axis=1, keepdims=True))  # of an ellipse: all on it
+OUTLINES = np.stack([POINTS, ROUND])
+AREA = 2.0 + 8.0 / 3.0 * (np.sqrt(2.0) - 1.0)  # of one of radius 1: a square and four segments of parabolas
+EVEN = np.sqrt(np.pi / AREA)  # times the radius: the same area as the circle
 COUNT = len(POINTS)
 _START, _END, _MIDDLE = 0, 1, 2
 _HEX20 = (  # (which node of the line, which point of its section)
@@ -31,22 +35,26 @@ _HEX20 = (  # (which node of the line, which point of its section)
 class Beam:
     """cells: (n, 3) rows of points: start, end, middle. Of each: axis (n, 3), near which the first direction n1 of the
     section lies; widths (n, 2) along n1 and n2 = tangent x n1 [length]; offsets (n, 2) of the nodes from the centre,
-    over these."""
+    over these; round (n,): whether it is the ellipse in these widths, with every node of the solid on it, rather than the
+    rectangle. Between the nodes there are parabolas: its area is 1.2 % smaller, its second moments are 2.3 %."""
 
     cells: Numbers
     axis: Vector
     widths: Vector
     offsets: Vector
+    round: NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
 class Sections:
     """points: (8 s, 3), eight for each section: corners, then the middles of its sides; node: (s,) which it stands on;
-    cells: (n, 20) rows of ``points``."""
+    cells: (n, 20) rows of ``points``; shares: (s, 8, 4) of its corners in the motion of each of its points where the section
+    stays one and strains evenly."""
 
     points: Vector
     node: Numbers
     cells: Numbers
+    shares: Vector
 
 
 def expand_beams(points: Vector, beam: Beam) -> Sections:
@@ -65,7 +73,8 @@ def expand_beams(points: Vector, beam: Beam) -> Sections:
         raise ValueError(int(np.flatnonzero(short.any(axis=1))[0]))
     tangents, second = tangents / lengths[..., None], second / sizes[..., None]
     node = beam.cells.ravel()
-    own = np.repeat(np.concatenate([beam.widths, beam.offsets], axis=1), 3, axis=0)
+    each = [beam.widths, beam.offsets * beam.widths, beam.round[:, None] * beam.widths[:, :1]]
+    own = np.repeat(np.concatenate(each, axis=1), 3, axis=0)
     section, first = _sections(node, tangents.reshape(-1, 3), second.reshape(-1, 3), own)
     count = len(first)
     along, across = np.zeros((count, 3)), np.zeros((count, 3))
@@ -75,12 +84,22 @@ def expand_beams(points: Vector, beam: Beam) -> Sections:
     across -= (across * along).sum(axis=1, keepdims=True) * along
     across /= np.linalg.norm(across, axis=1, keepdims=True)
     frame = np.stack([np.cross(across, along), across], axis=1)  # n1, n2
-    widths, offsets = own[first, :2], own[first, 2:]
-    place = (POINTS[None] - offsets[:, None, :]) * widths[:, None, :]
+    widths, offsets, shape = own[first, None, :2], own[first, None, 2:4], np.where(own[first, 4], 1, 0)
+    place = OUTLINES[shape] * widths - offsets
     at = points[node[first]][:, None, :] + np.einsum("spa,sax->spx", place, frame)
     of = section.reshape(-1, 3)
     cells = np.stack([COUNT * of[:, which] + point for which, point in _HEX20], axis=1)
-    return Sections(at.reshape(-1, 3), node[first], cells)
+    return Sections(at.reshape(-1, 3), node[first], cells, _SHARES[shape])
+
+
+def _shares(outline: Vector) -> Vector:
+    """What an affine motion of the corners (n, 2) of a section adds to that of each of its points: (m, n)."""
+    corners = outline[: len(CORNERS)]
+    shares = 1.0 / len(corners) + outline @ np.linalg.pinv(corners)
+    return np.where(np.abs(shares) > 1e-12, shares, 0.0)  # rounding
+
+
+_SHARES = np.stack([_shares(outline) for outline in OUTLINES])
 
 
 def _sections(node: Numbers, tangent: Vector, second: Vector, own: Vector) -> tuple[Numbers, Numbers]:
