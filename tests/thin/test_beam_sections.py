@@ -15,10 +15,21 @@ from models.gmsh_files import write_msh
 from models.thin import CLAMPED, LENGTH, E, solved
 
 RADIUS = 3.0
-SECTIONS = {"circle": abut.Beam(direction=(0.0, 1.0, 0.0), radius=RADIUS)}
-AREA = {"circle": np.pi * RADIUS**2}
-INERTIA = {"circle": np.pi * RADIUS**4 / 4}
-TORSION = {"circle": np.pi * RADIUS**4 / 2}
+WALL, SIDE, THIN = 0.5, 6.0, 0.2
+INSIDE, WITHIN = RADIUS - WALL, SIDE - 2 * THIN
+Y = (0.0, 1.0, 0.0)
+SECTIONS = {
+    "circle": abut.Beam(direction=Y, radius=RADIUS),
+    "pipe": abut.Beam(direction=Y, radius=RADIUS, wall=WALL),
+    "box": abut.Beam((SIDE, SIDE), direction=Y, wall=THIN),
+}
+AREA = {"circle": np.pi * RADIUS**2, "pipe": np.pi * (RADIUS**2 - INSIDE**2), "box": SIDE**2 - WITHIN**2}
+INERTIA = {
+    "circle": np.pi * RADIUS**4 / 4,
+    "pipe": np.pi * (RADIUS**4 - INSIDE**4) / 4,
+    "box": (SIDE**4 - WITHIN**4) / 12,
+}
+TORSION = {"circle": 2 * INERTIA["circle"], "pipe": 2 * INERTIA["pipe"], "box": (SIDE - THIN) ** 3 * THIN}  # Bredt
 each = pytest.mark.parametrize("section", SECTIONS)
 
 
@@ -85,7 +96,10 @@ loads = [{ kind = "nodal-force", on = "tip", value = [0, 0, 1] }]
 """
 
 
-@pytest.mark.parametrize(("section", "keys"), [("circle", "radius = 3")])
+@pytest.mark.parametrize(
+    ("section", "keys"),
+    [("circle", "radius = 3"), ("pipe", "radius = 3, wall = 0.5"), ("box", "widths = [6, 6], wall = 0.2")],
+)
 def test_in_a_job(section: str, keys: str, tmp_path: Path) -> None:
     line(tmp_path / "a.msh")
     (tmp_path / "job.toml").write_text(JOB.replace("SECTION", keys))

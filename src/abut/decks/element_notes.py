@@ -18,7 +18,7 @@ def element_notes(deck: Deck) -> list[str]:
 
 
 def _circles(deck: Deck) -> list[str]:
-    curved = np.concatenate([np.empty(0, np.int64), *(s.elements for s in deck.sections if s.round)])
+    curved = np.concatenate([np.empty(0, np.int64), *(s.elements for s in deck.sections if s.form == "ellipse")])
     codes = {b.code for b in deck.blocks if b.type.integration == "reduced" and np.isin(b.ids, curved).any()}
     full = [
         f"{code} of round section: expanded to C3D20, as the points of C3D20R would make it 7 % too stiff in bending"
@@ -28,7 +28,7 @@ def _circles(deck: Deck) -> list[str]:
         f"*BEAM SECTION, SECTION=CIRC of {s.name}: {s.widths[0]:g} is the diameter, as in CalculiX; where the deck is for "
         "Abaqus, whose number is the radius, double it"
         for s in deck.sections
-        if s.round and s.widths[0] == s.widths[1]
+        if s.form == "ellipse" and s.widths[0] == s.widths[1]
     ]
 
 

@@ -59,6 +59,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "direction": "near which the first direction lies",
         "offsets": "of the mesh from the middle of the section along both, over the widths (the diameter)",
         "radius": "of a round section, in place of widths, > 0 [length]",
+        "wall": "thickness of the wall of a box or a pipe [length]; left out: solid",
     },
     "BodyTable": {"kind": "the generator; the further keys are its arguments"},
     "ModelTable": {

@@ -30,6 +30,12 @@ from abut.thin.records import Shell, Thin
 
 Numbers = NDArray[np.int64]
 Value = tuple[str, Numbers, tuple[int, ...], float, History]  # kind, nodes, directions, value, history
+FORMS = {
+    (False, False): "rectangle",
+    (True, False): "ellipse",
+    (False, True): "box",
+    (True, True): "pipe",
+}  # round, hollow
 PLACE = Place("", 0)  # of what no deck says
 CODES = {"tri6": "S6", "quad8": "S8R", "line3": "B32"}
 NOTHING = Material(
@@ -64,7 +70,9 @@ def _section(name: str, section: Thin, ids: Numbers) -> Section:
     if isinstance(section, Shell):
         return Section(name, ids, NOTHING, section.thickness, PLACE, offset=section.offset)
     (x, y, z), (first, second) = section.direction, section.offsets
-    a, b = section.widths or (2.0 * EVEN * (section.radius or 0.0),) * 2
+    radius = (section.radius or 0.0) * (1.0 if section.wall else EVEN)
+    a, b = section.widths or (2.0 * radius,) * 2
+    form = FORMS[section.widths is None, section.wall is not None]
     return Section(
         name,
         ids,
@@ -74,7 +82,8 @@ def _section(name: str, section: Thin, ids: Numbers) -> Section:
         widths=(a, b),
         axis=(x, y, z),
         offsets=(first, second),
-        round=section.widths is None,
+        form=form,
+        wall=section.wall or 0.0,
     )
 
 

@@ -47,7 +47,8 @@ class Shell:
 
 @dataclass(frozen=True)
 class Beam:
-    """Rectangular or round section of a line mesh, which makes it solid. Give either ``widths`` or ``radius``.
+    """Rectangular or round section of a line mesh, which makes it solid. Give either ``widths`` or ``radius``,
+    and ``wall`` for a box or a pipe.
 
     Parameters
     ----------
@@ -58,7 +59,9 @@ class Beam:
     offsets : (2,) of float
         Of the mesh from the middle of the section along both, over the widths (of a circle its diameter).
     radius : float, optional
-        Of a circle [length].
+        Of a circle, outside [length].
+    wall : float, optional
+        Thickness of the wall of a box or a pipe, which are solid where left out [length].
 
     Raises
     ------
@@ -76,6 +79,7 @@ class Beam:
     direction: tuple[float, ...] = (0.0, 0.0, -1.0)
     offsets: tuple[float, ...] = (0.0, 0.0)
     radius: float | None = None
+    wall: float | None = None
 
     def __post_init__(self) -> None:
         if (self.widths is None) == (self.radius is None):
@@ -89,6 +93,12 @@ class Beam:
             checks.positive(value, "widths")
         if self.radius is not None:
             checks.positive(self.radius, "radius")
+        if self.wall is not None:
+            most = min(self.widths) / 2.0 if self.widths else self.radius or 0.0
+            if checks.positive(self.wall, "wall") >= most:
+                raise InputError(
+                    f"wall: expected less than {most:g}, half the section, got {self.wall:g}; leave it out"
+                )
         if not any(self.direction):
             raise InputError("direction: it has no length; give a vector across the line")
 

@@ -168,7 +168,13 @@ def _beam_section(
             raise card.error(f"{name}={card.get(name)}: expected a number (over the width)")
         offsets.append(value)
     section = _of_elements(card, mesh, known, axes, 0.0)
-    return replace(section, widths=widths, axis=axis, offsets=(offsets[0], offsets[1]), round=kind == "CIRC")
+    return replace(
+        section,
+        widths=widths,
+        axis=axis,
+        offsets=(offsets[0], offsets[1]),
+        form="ellipse" if kind == "CIRC" else "rectangle",
+    )
 
 
 def _of_elements(
