@@ -65,9 +65,9 @@ def test_cantilever(section: str, tmp_path: Path) -> None:
 
 @each
 def test_twisted(section: str, tmp_path: Path) -> None:
-    """M L / G J, and no shift."""
+    """M L / G J, and no shift. The box is thin: formula by Bredt, good to the wall over the side, 3 %."""
     shift, turn = end(moved(section, tmp_path, (abut.MidForce("tip", (0.0, 0.0, 0.0), (50.0, 0.0, 0.0)),)))
-    assert turn[0] == pytest.approx(50.0 * LENGTH / (E / 2 * TORSION[section]), rel=0.01)
+    assert turn[0] == pytest.approx(50.0 * LENGTH / (E / 2 * TORSION[section]), rel=0.02 if section == "box" else 0.01)
     assert shift == pytest.approx(0.0, abs=1e-6 * turn[0])
 
 
@@ -84,6 +84,23 @@ def test_stretched(section: str, tmp_path: Path) -> None:
     """P L / E A; the force comes in at points of the last section, which adds up to a third of the diameter."""
     shift, _ = end(moved(section, tmp_path, (abut.MidForce("tip", (100.0, 0.0, 0.0)),)))
     assert shift[0] == pytest.approx(100.0 * LENGTH / (E * AREA[section]), rel=0.02)
+
+
+@pytest.mark.parametrize("section", ["pipe", "box"])
+def test_faces(section: str, tmp_path: Path) -> None:
+    """The volumes that both faces enclose, by the divergence theorem: half the integral of y n_y + z n_z, whose sign on the
+    inner one is negative as its normal points into the hollow."""
+    mesh = abut.thicken(line(tmp_path / "a.msh"), {"rib": SECTIONS[section]}).mesh
+    outside, inside = (_enclosed(mesh, f"rib.{name}") for name in ("side", "inside"))
+    area = {"pipe": (np.pi * RADIUS**2, np.pi * INSIDE**2), "box": (SIDE**2, WITHIN**2)}[section]
+    assert (outside, inside) == pytest.approx((area[0] * LENGTH, -area[1] * LENGTH), rel=2e-3)  # parabolas: 8e-4
+
+
+def _enclosed(mesh: abut.Mesh, name: str) -> float:
+    from abut.bodies.loads import stress_load
+
+    force = stress_load(mesh.surface(name), np.eye(3)).reshape(-1, 3)  # the integral of N n
+    return float((force[:, 1:] * mesh.points[:, 1:]).sum()) / 2.0
 
 
 JOB = """
@@ -114,6 +131,8 @@ def test_in_a_job(section: str, keys: str, tmp_path: Path) -> None:
         ({}, "give either widths, of a rectangle, or radius, of a circle"),
         ({"widths": (1.0, 2.0), "radius": 1.0}, "give either widths, of a rectangle, or radius, of a circle"),
         ({"radius": 0.0}, "radius: expected a number > 0"),
+        ({"radius": 1.0, "wall": 1.0}, "wall: expected less than 1, half the section"),
+        ({"widths": (1.0, 2.0), "wall": 0.0}, "wall: expected a number > 0"),
     ],
 )
 def test_refused(given: dict[str, float], words: str) -> None:

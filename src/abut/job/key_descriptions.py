@@ -1,7 +1,6 @@
 """Descriptions of the keys of a job file, for the JSON Schema (editors show it) and the reference page.
 
-A unit stands at the end in square brackets: force, length, mass, time and temperature are the user's own.
-"""
+A unit stands at the end in square brackets: force, length, mass, time and temperature are the user's own."""
 
 from __future__ import annotations
 

@@ -47,8 +47,8 @@ class Shell:
 
 @dataclass(frozen=True)
 class Beam:
-    """Rectangular or round section of a line mesh, which makes it solid. Give either ``widths`` or ``radius``,
-    and ``wall`` for a box or a pipe.
+    """Section of a line mesh, which makes it solid: a rectangle (``widths``) or a circle (``radius``), with ``wall`` a box
+    or a pipe.
 
     Parameters
     ----------
