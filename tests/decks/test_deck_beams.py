@@ -87,10 +87,15 @@ def test_offset_and_gravity(tmp_path: Path) -> None:
     ("text", "words"),
     [
         (
-            beam("B32").replace("*BEAM SECTION", "*BEAM GENERAL SECTION"),
-            r"\*BEAM GENERAL SECTION: pipes, boxes and sections by their moments are not supported; give \*BEAM SECTION",
+            beam("B32", section="BOX\n.4, .4, .1, .1, .1, .2\n0.,1.,0.\n"),
+            "walls 0.1, 0.1, 0.1, 0.2: boxes with different",
         ),
-        (beam("B32", section="CIRC\n.1\n0.,1.,0.\n"), "SECTION=CIRC: only rectangles"),
+        (beam("B32", section="PIPE\n.4, .4\n0.,1.,0.\n"), "wall: expected a number > 0 and < 0.4"),
+        (
+            beam("B32", section="PIPE\n.4, .1\n0.,1.,0.\n") + "*SURFACE, NAME=S\nEALL, S1\n",
+            "faces of hollow beams have no numbers; name the element without a face",
+        ),
+        (beam("B32", section="HEX\n.1\n0.,1.,0.\n"), "SECTION=HEX: RECT, CIRC, PIPE and BOX alone"),
         (beam("B32", section="RECT\n.1, 0.\n0.,1.,0.\n"), "width: expected a number > 0, got 0"),
         (beam("B32", section="RECT\n.1, .1\n1.,0.,0.\n"), "beam 1 has no length, or lies along the first direction"),
         (beam("B32").partition("*BEAM")[0], r"element 1 without \*BEAM SECTION"),
@@ -101,14 +106,49 @@ def test_refused(text: str, words: str, tmp_path: Path) -> None:
         load(tmp_path, text + step("*CLOAD", "END, 3, 1."))
 
 
+def test_circle(tmp_path: Path) -> None:
+    """One number is the diameter, which a note says, as in Abaqus it is the radius."""
+    text = beam("B32R", section="circ\n.4\n0., 1., 0.\n") + step("*CLOAD", "END, 3, 1.")
+    job = load(tmp_path, text)
+    assert np.linalg.norm(job.model.mesh.points[:, 1:], axis=1) == pytest.approx(0.2)
+    assert "SECTION=CIRC of EALL: 0.4 is the diameter, as in CalculiX" in "".join(job.notes)
+    assert "B32R of round section: expanded to C3D20, " in "".join(job.notes)
+    inertia = np.pi * 0.2**4 / 4
+    assert end(solve(tmp_path, text))[2] == pytest.approx(LENGTH**3 / (3 * E * inertia), rel=0.03)  # I is 2.3 % less
+
+
+@pytest.mark.parametrize("card", ["BEAM SECTION", "BEAM GENERAL SECTION"])
+@pytest.mark.parametrize(
+    ("section", "area", "inertia"),
+    [
+        ("PIPE\n.2, .05\n", np.pi * (0.2**2 - 0.15**2), np.pi * (0.2**4 - 0.15**4) / 4),
+        ("box\n.4, .25, .05, .05, .05, .05\n", 0.4 * 0.25 - 0.3 * 0.15, (0.4 * 0.25**3 - 0.3 * 0.15**3) / 12),
+    ],
+)
+def test_hollow(section: str, area: float, inertia: float, card: str, tmp_path: Path) -> None:
+    """Its weight, on every solid of an element: q L^4 / 8 E I; shear adds a few (h / L)^2."""
+    text = beam("B32R", section=section + "0., 1., 0.\n").replace("BEAM SECTION", card)
+    solution = solve(tmp_path, text + step("*DLOAD", "EALL, GRAV, 3., 0., 0., -1."))
+    x = solution.model.mesh.points[:, 0]
+    assert solution.displacement[x > LENGTH - 1e-9, 2].mean() == pytest.approx(
+        -3.0 * area * LENGTH**4 / (8 * E * inertia), rel=0.01
+    )
+
+
 @pytest.mark.skipif(CCX is None, reason="CalculiX is not installed")
+@pytest.mark.parametrize("section", [SECTION, SECTION.replace("RECT", "CIRC")])
 @pytest.mark.parametrize("code", ["B32", "B32R"])
-def test_as_calculix(code: str, tmp_path: Path) -> None:
-    """Clamped, a force aslant and a moment at its end."""
-    text = beam(code, nu=0.3) + step("*CLOAD", "END, 2, 1.", "END, 3, 2.", "END, 5, 3.", "*NODE PRINT, NSET=END", "U")
+def test_as_calculix(code: str, section: str, tmp_path: Path) -> None:
+    """Clamped, a force aslant and a moment at its end; a rectangle and an ellipse. CalculiX
+    has other points in a B32R that is round: 0.7 % in bending."""
+    text = beam(code, nu=0.3, section=section) + step(
+        "*CLOAD", "END, 2, 1.", "END, 3, 2.", "END, 5, 3.", "*NODE PRINT, NSET=END", "U"
+    )
     path = write(tmp_path, text)
     solution = solve(tmp_path, text)
     subprocess.run(["ccx", "-i", path.stem], cwd=tmp_path, check=True, capture_output=True)
     row = next(r for line in path.with_suffix(".dat").read_text().splitlines() if (r := line.split()) and r[0] == "17")
     wanted = np.array(row[1:4], dtype=float)
-    assert end(solution) == pytest.approx(wanted, abs=0.002 * np.abs(wanted).max())
+    assert end(solution) == pytest.approx(
+        wanted, abs=(0.01 if "CIRC" in section and code == "B32R" else 0.002) * np.abs(wanted).max()
+    )

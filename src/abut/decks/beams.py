@@ -1,47 +1,59 @@
-"""Beams of a deck expanded into solids, as CalculiX does it: as shells are (``decks.thin``), with a rectangular section.
+"""Beams of a deck expanded into solids, as CalculiX does it: as shells are (``decks.thin``), over sections of
+several forms; hollow ones take a ring of solids.
 
 A node where turns are held or prescribed, or a moment acts, is a coupling of its section: the mean motion of its corners (at
 large displacements, where turns are held, a rigid one)."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
+from abut.decks.rings import in_rings
 from abut.decks.solid_blocks import by_block, free_numbers, sections_of, with_solids
 from abut.decks.thin import renamed
 from abut.io.deck.reasons import DeckError, Place
 from abut.io.deck.record import Block, Coupling, Deck, Equation, Numbers, Section, Thin
-from abut.mesh.thin.beams import COUNT, Beam, Sections, expand_beams
+from abut.mesh.thin.beams import Beam, Sections, expand_beams
 
 CARD = "*BEAM SECTION"
-EDGES = ((4, 0, 1), (5, 1, 2), (6, 2, 3), (7, 3, 0))  # of a section: the middle of a side, and its corners
+Made = tuple[Numbers, NDArray[np.float64]]  # a section: its nodes, -1 for those that are not there, and their shares
 
 
 def with_thick_beams(deck: Deck, finite: bool) -> Deck:
     """The deck with its beams expanded, its shells already are. ``finite``: at large displacements.
 
-    Raises InputError for beams without a section or a length, and for nodes that shells have as well."""
-    blocks = [block for block in deck.blocks if block.type.thin == "beam"]
-    if not blocks:
+    Raises InputError for beams without a section or a length, for nodes that shells have as well, and for pressures and
+    surfaces on numbered faces of hollow ones."""
+    if not any(block.type.thin == "beam" for block in deck.blocks):
         return deck
-    rows = np.concatenate([np.searchsorted(deck.nodes, _ordered(block)) for block in blocks])
-    sections = [section for block in blocks for section in _sections(deck, block)]
-    beam = Beam(
-        rows,
-        np.array([section.axis for section in sections]),
-        np.array([section.widths for section in sections]),
-        np.array([section.offsets for section in sections]),
-    )
-    try:
-        solid = expand_beams(deck.points, beam)
-    except ValueError as error:
-        number = np.concatenate([block.ids for block in blocks])[error.args[0]]
-        raise DeckError(
-            blocks[0].place, f"*ELEMENT: beam {number} has no length, or lies along the first direction of its section"
-        ) from None
-    return _with_solids(deck, blocks, solid, finite)
+    deck = replace(deck, blocks=tuple(part for block in deck.blocks for part in _apart(deck, block)))
+    beams = [block for block in deck.blocks if block.type.thin == "beam"]
+    forms: dict[str, list[Block]] = {}
+    for block in beams:
+        forms.setdefault(_sections(deck, block)[0].form, []).append(block)
+    solids = [_solid(deck, blocks) for blocks in forms.values()]
+    starts = np.cumsum([0, *(len(solid.points) for solid in solids)]).tolist()
+    cells = [
+        rows
+        for solid, blocks, start in zip(solids, forms.values(), starts)
+        for rows in by_block(blocks, solid.cells + start)
+    ]
+    points = np.concatenate([solid.points for solid in solids])
+    number = free_numbers(deck, len(points), cells)
+    made: dict[int, list[Made]] = {}
+    for solid, start in zip(solids, starts):
+        each = number[start : start + len(solid.points)].reshape(len(solid.node), -1)
+        for node, nodes, shares in zip(deck.nodes[solid.node].tolist(), each, solid.shares):
+            made.setdefault(node, []).append((nodes, shares))
+    order = [block for blocks in forms.values() for block in blocks]
+    by_place = {id(block): rows for block, rows in zip(order, cells)}
+    deck, rows = in_rings(deck, [by_place[id(block)] for block in beams])
+    new = with_solids(deck, "beam", points, number, [("hex20", each) for each in rows])
+    return _bound(deck, new, made, beams[0].place, finite)
 
 
 def _ordered(block: Block) -> Numbers:
@@ -57,38 +69,63 @@ def _sections(deck: Deck, block: Block) -> list[Section]:
     return result
 
 
-def _with_solids(deck: Deck, blocks: list[Block], solid: Sections, finite: bool) -> Deck:
-    number = free_numbers(deck, len(solid.points), [solid.cells])
-    made: dict[
-        int, list[Numbers]
-    ] = {}  # node -> the eight nodes of each of its sections, -1 for those that are not there
-    for i, point in enumerate(solid.node.tolist()):
-        made.setdefault(int(deck.nodes[point]), []).append(number[COUNT * i : COUNT * (i + 1)])
+def _apart(deck: Deck, block: Block) -> list[Block]:
+    """Beams of each form of section as a block of their own; ellipses integrate fully, as ``element_notes`` says."""
+    if block.type.thin != "beam":
+        return [block]
+    forms = np.array([section.form for section in _sections(deck, block)])
+    return [
+        replace(
+            block,
+            type=replace(block.type, integration="full") if form == "ellipse" else block.type,
+            ids=block.ids[forms == form],
+            nodes=block.nodes[forms == form],
+        )
+        for form in dict.fromkeys(forms.tolist())
+    ]
+
+
+def _solid(deck: Deck, blocks: list[Block]) -> Sections:
+    """The solids of blocks of one form."""
+    sections = [section for block in blocks for section in _sections(deck, block)]
+    beam = Beam(
+        np.concatenate([np.searchsorted(deck.nodes, _ordered(block)) for block in blocks]),
+        np.array([section.axis for section in sections]),
+        np.array([section.widths for section in sections]),
+        np.array([section.offsets for section in sections]),
+        np.array([section.wall for section in sections]),
+        sections[0].form,
+    )
+    try:
+        return expand_beams(deck.points, beam)
+    except ValueError as error:
+        number = np.concatenate([block.ids for block in blocks])[error.args[0]]
+        raise DeckError(
+            blocks[0].place, f"*ELEMENT: beam {number} has no length, or lies along the first direction of its section"
+        ) from None
+
+
+def _bound(deck: Deck, new: Deck, made: Mapping[int, list[Made]], place: Place, finite: bool) -> Deck:
+    """``new`` with what the nodes of beams are for solids. made: of each node its sections."""
     for node in made:
         if node in deck.thin or any(bound.reference == node for bound in deck.couplings):
             raise DeckError(
-                blocks[0].place,
-                f"*ELEMENT: node {node} belongs to a beam and a shell, or is a reference; join them by *TIE",
+                place, f"*ELEMENT: node {node} belongs to a beam and a shell, or is a reference; join them by *TIE"
             )
-    made_of = [("hex20", rows) for rows in by_block(blocks, solid.cells)]
-    new = with_solids(deck, "beam", solid.points, number, made_of)
-    new = renamed(new, {node: np.unique(np.concatenate(n)[np.concatenate(n) >= 0]) for node, n in made.items()}, {})
+    new = renamed(new, {node: _all(sections) for node, sections in made.items()}, {})
     held, turned = _turned(deck, ("boundary",)), _turned(deck, ("boundary", "force"))
-    place = blocks[0].place
     bound = [
-        _coupling(node, nodes, finite and node in held, place)
-        for node, nodes in made.items()
-        if len(nodes) > 1 or node in turned
+        _coupling(node, sections, finite and node in held, place)
+        for node, sections in made.items()
+        if len(sections) > 1 or node in turned
     ]
     coupled = {coupling.reference for coupling in bound}
-    thin = {node: Thin(tuple(nodes[0][:4].tolist())) for node, nodes in made.items() if node not in coupled}
+    thin = {node: Thin(tuple(_corners(s[0]).tolist())) for node, s in made.items() if node not in coupled}
     straight = [
-        Equation(((int(nodes[0][e]), k, 2.0), (int(nodes[0][a]), k, -1.0), (int(nodes[0][b]), k, -1.0)), place)
+        equation
         for coupling in bound
-        if coupling.distributing and coupling.reference in held and (nodes := made[coupling.reference])
-        for e, a, b in EDGES
-        if nodes[0][e] >= 0
-        for k in (1, 2, 3)
+        if coupling.distributing and coupling.reference in held
+        for equation in _straight(*made[coupling.reference][0], place)
     ]
     return replace(
         new,
@@ -98,10 +135,30 @@ def _with_solids(deck: Deck, blocks: list[Block], solid: Sections, finite: bool)
     )
 
 
-def _coupling(node: int, nodes: list[Numbers], rigid: bool, place: Place) -> Coupling:
+def _corners(section: Made) -> Numbers:
+    return section[0][: section[1].shape[1]]
+
+
+def _all(sections: list[Made]) -> Numbers:
+    nodes = np.concatenate([nodes for nodes, _ in sections])
+    return np.unique(nodes[nodes >= 0])
+
+
+def _straight(nodes: Numbers, shares: NDArray[np.float64], place: Place) -> list[Equation]:
+    """The points of a section beside its corners go with these."""
+    every, count = nodes.tolist(), shares.shape[1]
+    return [
+        Equation(((n, k, -1.0), *((c, k, w) for c, w in zip(every[:count], share) if w)), place)
+        for n, share in zip(every[count:], shares[count:].tolist())
+        if n >= 0
+        for k in (1, 2, 3)
+    ]
+
+
+def _coupling(node: int, sections: list[Made], rigid: bool, place: Place) -> Coupling:
     """One section by its mean; several, or one whose turns are held at large displacements, as a rigid body."""
-    mean = len(nodes) == 1 and not rigid
-    every = np.sort(nodes[0][:4]) if mean else np.unique(np.concatenate(nodes)[np.concatenate(nodes) >= 0])
+    mean = len(sections) == 1 and not rigid
+    every = np.sort(_corners(sections[0])) if mean else _all(sections)
     name = f"section {node}" if mean else f"knot {node}"
     return Coupling(name, mean, node, "", every, frozenset(range(1, 7)), None, place)
 

@@ -12,8 +12,24 @@ EDGES = ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4),
 
 
 def element_notes(deck: Deck) -> list[str]:
-    """C3D8I that are thin, which lock in bending here; C3D20 that are warm, which CalculiX takes otherwise."""
-    return [note for block in deck.blocks for note in (*_thin(deck, block), *_warm(deck, block))]
+    """C3D8I that are thin, which lock in bending here; C3D20 that are warm, which CalculiX takes otherwise; circles of
+    beams, for which Abaqus has the radius."""
+    return [*_circles(deck), *(note for block in deck.blocks for note in (*_thin(deck, block), *_warm(deck, block)))]
+
+
+def _circles(deck: Deck) -> list[str]:
+    curved = np.concatenate([np.empty(0, np.int64), *(s.elements for s in deck.sections if s.form == "ellipse")])
+    codes = {b.code for b in deck.blocks if b.type.integration == "reduced" and np.isin(b.ids, curved).any()}
+    full = [
+        f"{code} of round section: expanded to C3D20, as the points of C3D20R would make it 7 % too stiff in bending"
+        for code in sorted(codes)
+    ]
+    return full + [
+        f"*BEAM SECTION, SECTION=CIRC of {s.name}: {s.widths[0]:g} is the diameter, as in CalculiX; where the deck is for "
+        "Abaqus, whose number is the radius, double it"
+        for s in deck.sections
+        if s.form == "ellipse" and s.widths[0] == s.widths[1]
+    ]
 
 
 def _thin(deck: Deck, block: Block) -> list[str]:

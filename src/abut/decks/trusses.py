@@ -41,7 +41,9 @@ def with_thick_trusses(deck: Deck) -> Deck:
     widths = np.repeat(np.sqrt([section.thickness for section in sections])[:, None], 2, axis=1)
     rows = np.arange(own.size).reshape(own.shape)  # no bar shares a section with another
     try:
-        solid = expand_beams(points.reshape(-1, 3), Beam(rows, aside, widths, np.zeros_like(widths)))
+        solid = expand_beams(
+            points.reshape(-1, 3), Beam(rows, aside, widths, np.zeros_like(widths), np.zeros(len(rows)))
+        )
     except ValueError as error:
         number = np.concatenate([block.ids for block in blocks])[error.args[0]]
         raise DeckError(blocks[0].place, f"*ELEMENT: truss {number} has no length; mend the mesh") from None
@@ -63,7 +65,7 @@ def with_thick_trusses(deck: Deck) -> Deck:
     corners = number.reshape(-1, 3, COUNT)[:, 0, :4]
     at = solid.points.reshape(-1, 3, COUNT, 3)[:, 0, :4]
     spins = [_spin(n, x - x.mean(axis=0), t, blocks[0]) for n, x, t in zip(corners, at, along)]
-    made_of = [("hex20", rows) for rows in by_block(blocks, solid.cells)]
+    made_of = [("hex20", rows) for rows in by_block(blocks, solid.cells[:, 0])]
     new = with_solids(deck, "truss", solid.points, number, made_of)
     stand_for = {node: np.unique([n for bar in each for n in bar.nodes]) for node, each in made.items()}
     new = renamed(new, stand_for, {})

@@ -1,7 +1,6 @@
 """Descriptions of the keys of a job file, for the JSON Schema (editors show it) and the reference page.
 
-A unit stands at the end in square brackets: force, length, mass, time and temperature are the user's own.
-"""
+A unit stands at the end in square brackets: force, length, mass, time and temperature are the user's own."""
 
 from __future__ import annotations
 
@@ -55,9 +54,11 @@ MEANINGS: dict[str, dict[str, str]] = {
         "offset": "of the mesh from the middle of the shell along the normal, over the thickness: 0.5 on the positive side",
     },
     "BeamTable": {
-        "widths": "of the rectangular section along its first direction and along the second, tangent x first, > 0 [length]",
+        "widths": "of a rectangular section along its first direction and along the second, tangent x first, > 0 [length]",
         "direction": "near which the first direction lies",
-        "offsets": "of the mesh from the middle of the section along both, over the widths",
+        "offsets": "of the mesh from the middle of the section along both, over the widths (the diameter)",
+        "radius": "of a round section, in place of widths, > 0 [length]",
+        "wall": "thickness of the wall of a box or a pipe [length]; left out: solid",
     },
     "BodyTable": {"kind": "the generator; the further keys are its arguments"},
     "ModelTable": {

@@ -51,7 +51,7 @@ class BodyTable(BaseModel):
 
 
 SHELL = table_of(Shell, meaning="a group of surface cells that its thickness makes solid")
-BEAM = table_of(Beam, meaning="a group of lines that a rectangular section makes solid")
+BEAM = table_of(Beam, meaning="a group of lines that a rectangular or round section, solid or hollow, makes solid")
 
 
 class MeshTable(Table):

@@ -23,12 +23,19 @@ from abut.io.deck.record import (
     Section,
     Step,
 )
+from abut.mesh.thin.beams import EVEN
 from abut.model.conditions import History
 from abut.thin.quadratic import Sorted
 from abut.thin.records import Shell, Thin
 
 Numbers = NDArray[np.int64]
 Value = tuple[str, Numbers, tuple[int, ...], float, History]  # kind, nodes, directions, value, history
+FORMS = {
+    (False, False): "rectangle",
+    (True, False): "ellipse",
+    (False, True): "box",
+    (True, True): "pipe",
+}  # round, hollow
 PLACE = Place("", 0)  # of what no deck says
 CODES = {"tri6": "S6", "quad8": "S8R", "line3": "B32"}
 NOTHING = Material(
@@ -62,8 +69,22 @@ def as_deck(parts: Sorted, sections: Mapping[str, Thin], where: str) -> Deck:
 def _section(name: str, section: Thin, ids: Numbers) -> Section:
     if isinstance(section, Shell):
         return Section(name, ids, NOTHING, section.thickness, PLACE, offset=section.offset)
-    (a, b), (x, y, z), (first, second) = section.widths, section.direction, section.offsets
-    return Section(name, ids, NOTHING, 1.0, PLACE, widths=(a, b), axis=(x, y, z), offsets=(first, second))
+    (x, y, z), (first, second) = section.direction, section.offsets
+    radius = (section.radius or 0.0) * (1.0 if section.wall else EVEN)
+    a, b = section.widths or (2.0 * radius,) * 2
+    form = FORMS[section.widths is None, section.wall is not None]
+    return Section(
+        name,
+        ids,
+        NOTHING,
+        1.0,
+        PLACE,
+        widths=(a, b),
+        axis=(x, y, z),
+        offsets=(first, second),
+        form=form,
+        wall=section.wall or 0.0,
+    )
 
 
 def _solids(parts: Sorted) -> Iterator[tuple[str, Numbers]]:

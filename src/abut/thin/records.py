@@ -47,40 +47,58 @@ class Shell:
 
 @dataclass(frozen=True)
 class Beam:
-    """Rectangular section of a line mesh, which makes it solid.
+    """Section of a line mesh, which makes it solid: a rectangle (``widths``) or a circle (``radius``), with ``wall`` a box
+    or a pipe.
 
     Parameters
     ----------
-    widths : (2,) of float
-        Along the first direction of the section and along the second, tangent x first [length].
+    widths : (2,) of float, optional
+        Of a rectangle, along the first direction of the section and along the second, tangent x first [length].
     direction : (3,) of float
         Near which the first direction lies; its part across the line counts.
     offsets : (2,) of float
-        Of the mesh from the middle of the section along both, over the widths.
+        Of the mesh from the middle of the section along both, over the widths (of a circle its diameter).
+    radius : float, optional
+        Of a circle, outside [length].
+    wall : float, optional
+        Thickness of the wall of a box or a pipe, which are solid where left out [length].
 
     Raises
     ------
     InputError
-        For widths that are not above 0, and for what are no such numbers.
+        For both or neither of them, for such as are not above 0, and for what are no such numbers.
 
     Examples
     --------
     >>> import abut
     >>> rib = abut.Beam((2.0, 10.0), direction=(0.0, 1.0, 0.0))  # of a line along x: 2 along y, 10 along z
+    >>> bar = abut.Beam(radius=4.0)
     """
 
-    widths: tuple[float, ...]
+    widths: tuple[float, ...] | None = None
     direction: tuple[float, ...] = (0.0, 0.0, -1.0)
     offsets: tuple[float, ...] = (0.0, 0.0)
+    radius: float | None = None
+    wall: float | None = None
 
     def __post_init__(self) -> None:
-        for name, count in (("widths", 2), ("direction", 3), ("offsets", 2)):
+        if (self.widths is None) == (self.radius is None):
+            raise InputError("widths: give either widths, of a rectangle, or radius, of a circle")
+        for name, count in (*((("widths", 2),) if self.radius is None else ()), ("direction", 3), ("offsets", 2)):
             values = vector(getattr(self, name), name)
             if len(values) != count:
                 raise InputError(f"{name}: expected {count} numbers, got {len(values)}")
             object.__setattr__(self, name, values)
-        for value in self.widths:
+        for value in self.widths or ():
             checks.positive(value, "widths")
+        if self.radius is not None:
+            checks.positive(self.radius, "radius")
+        if self.wall is not None:
+            most = min(self.widths) / 2.0 if self.widths else self.radius or 0.0
+            if checks.positive(self.wall, "wall") >= most:
+                raise InputError(
+                    f"wall: expected less than {most:g}, half the section, got {self.wall:g}; leave it out"
+                )
         if not any(self.direction):
             raise InputError("direction: it has no length; give a vector across the line")
 

@@ -16,6 +16,7 @@ from abut.thin.records import Shell, Thin
 
 Numbers = NDArray[np.int64]
 ROUND = (0, 1, 2, 4)  # of the faces S1, S2, ... of a solid that a beam becomes: all but its ends
+OUTSIDE, INSIDE = 0, 1  # of those of a solid of a hollow beam
 SNEG, SPOS = 0, 1  # of the faces S1, S2, ... of a solid that a shell becomes; then those at its edges
 NONE = np.empty((0, 2), np.int64)
 
@@ -43,8 +44,10 @@ def sides(
             _add(result, f"{name}.edge", rows[free & np.isin(rows[:, 0], ids[name])])
         else:
             block = blocks[f"{name}:line3"]
-            for face in ROUND:
+            for face in ROUND if section.wall is None else (OUTSIDE,):
                 _add(result, f"{name}.side", _face(block, block.ids, face))
+            if section.wall is not None:
+                _add(result, f"{name}.inside", _face(block, block.ids, INSIDE))
     for name, on in parts.on.items():
         for kind, cells in on.items():
             if kind == "line3":

@@ -21,7 +21,7 @@ from abut.fields import evaluate
 from abut.io.deck.groups import Groups
 from abut.io.deck.nodal_constraints import bonds
 from abut.io.deck.reasons import DeckError
-from abut.io.deck.record import Deck
+from abut.io.deck.record import Block, Deck
 from abut.io.raw import RawMesh
 from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
@@ -121,7 +121,10 @@ def _groups(deck: Deck, parts: Sorted, sections: Mapping[str, Thin]) -> Groups:
     groups = Groups(deck)
     for name in parts.others:
         groups.free_name(name)
-    blocks = {block.code: block for block in deck.blocks}
+    blocks: dict[str, Block] = {}
+    for block in deck.blocks:
+        first = blocks.get(block.code)
+        blocks[block.code] = replace(first, ids=np.concatenate([first.ids, block.ids])) if first else block
     ids = {s.name: s.elements for s in deck.sections}
     for name in sections:
         groups.body(name, ids[name])

@@ -9,6 +9,7 @@ from itertools import takewhile
 import numpy as np
 
 from abut.errors import nearest
+from abut.io.deck.beam_forms import form_of
 from abut.io.deck.cards import Card, Line, as_float, as_integer, key, of
 from abut.io.deck.contact_cards import sides
 from abut.io.deck.elastic_cards import elastic, expansion, orientation
@@ -143,16 +144,8 @@ def _shell_section(
 def _beam_section(
     card: Card, mesh: MeshCards, known: Mapping[str, Material] | None, axes: Mapping[str, Card]
 ) -> Section:
-    """One *BEAM SECTION. Raises InputError for other sections than rectangles, and for widths that are none."""
-    if not key(card.get("SECTION", "RECT") or "").startswith("RECT"):  # CalculiX reads four letters
-        raise card.error(
-            f"SECTION={card.get('SECTION')}: only rectangles (RECT) are supported; model the part with shells or solids"
-        )
-    line = card.first("widths")
-    first = line.number(0, "width")
-    widths = (first, line.number(1, "second width", first))
-    if not min(widths) > 0.0:
-        raise line.error(f"width: expected a number > 0, got {min(widths):g}")
+    """One *BEAM SECTION or *BEAM GENERAL SECTION. Raises InputError for what is no such section."""
+    form, widths, wall = form_of(card)
     axis = (0.0, 0.0, -1.0)
     if len(card.lines) > 1 and any(card.lines[1].fields):
         x, y, z = (card.lines[1].number(i, "component of the first direction", 0.0) for i in range(3))
@@ -166,7 +159,14 @@ def _beam_section(
             raise card.error(f"{name}={card.get(name)}: expected a number (over the width)")
         offsets.append(value)
     section = _of_elements(card, mesh, known, axes, 0.0)
-    return replace(section, widths=widths, axis=axis, offsets=(offsets[0], offsets[1]))
+    return replace(
+        section,
+        widths=widths,
+        axis=axis,
+        offsets=(offsets[0], offsets[1]),
+        form=form,
+        wall=wall,
+    )
 
 
 def _of_elements(
@@ -194,7 +194,12 @@ def _axes(card: Card, material: Material, known: Mapping[str, Card]) -> Orientat
     return orientation(known[name.upper()])
 
 
-_SECTIONS = {"SOLIDSECTION": _section, "SHELLSECTION": _shell_section, "BEAMSECTION": _beam_section}
+_SECTIONS = {
+    "SOLIDSECTION": _section,
+    "SHELLSECTION": _shell_section,
+    "BEAMSECTION": _beam_section,
+    "BEAMGENERALSECTION": _beam_section,
+}
 
 
 def equations(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[Equation, ...]:

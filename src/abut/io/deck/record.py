@@ -113,7 +113,8 @@ class Section:
     """name: the element set; thickness: of plane elements and shells, 0 of shells whose nodes have
     one each; orientation: None for the global axes; offset: of a
     shell, its nodes from the mid-surface along the normal over the thickness. Of a beam: widths along the first
-    direction, near ``axis``, and the second, and its nodes from the centre over these."""
+    direction, near ``axis``, and the second, its nodes from the centre over these, its form
+    (``mesh.thin.beams.OUTLINES``) and the wall of a hollow one."""
 
     name: str
     elements: Numbers
@@ -125,6 +126,8 @@ class Section:
     widths: tuple[float, float] = (0.0, 0.0)
     axis: tuple[float, float, float] = (0.0, 0.0, -1.0)
     offsets: tuple[float, float] = (0.0, 0.0)
+    form: str = "rectangle"
+    wall: float = 0.0
 
 
 @dataclass(frozen=True)

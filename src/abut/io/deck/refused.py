@@ -40,8 +40,6 @@ _FLOW = "belongs to the flow in networks or of fluids, which abut does not solve
 _STATE = "; make a deck for each state"
 _OPTIMISED = "belongs to optimisation; take it out with its step"
 REFUSED: dict[str, str] = {
-    "BEAM GENERAL SECTION": "pipes, boxes and sections by their moments are not supported; give *BEAM SECTION with a "
-    "rectangle (SECTION=RECT), or model the part with shells or solids",
     "BOUNDARYF": _FLOW,
     "CFLUX": f"heat flux belongs to heat transfer, which abut does not solve{_THERMAL}",
     "CHANGE CONTACT TYPE": f"contact that changes between steps is not supported{_STATE}",

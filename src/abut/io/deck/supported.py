@@ -37,7 +37,9 @@ READ: dict[str, tuple[str, ...]] = {
     "DENSITY": (),
     "EXPANSION": ("TYPE", "ZERO"),
     "ORIENTATION": ("NAME", "SYSTEM", "DEFINITION", "LOCAL DIRECTIONS"),
-    "BEAM SECTION": ("ELSET", "MATERIAL", "ORIENTATION", "SECTION", "OFFSET1", "OFFSET2"),
+    **dict.fromkeys(
+        ("BEAM SECTION", "BEAM GENERAL SECTION"), ("ELSET", "MATERIAL", "ORIENTATION", "SECTION", "OFFSET1", "OFFSET2")
+    ),
     "NODAL THICKNESS": (),
     "NORMAL": (),
     "SHELL SECTION": ("ELSET", "MATERIAL", "ORIENTATION", "OFFSET", "NODAL THICKNESS", "COMPOSITE"),
@@ -103,7 +105,6 @@ GENERATED = {  # nodes and elements that do not stand in the deck, or under numb
 }
 NEEDED = {  # leaving these out would leave no deck
     *GENERATED,
-    key("BEAM GENERAL SECTION"),
     key("MEMBRANE SECTION"),
 }
 

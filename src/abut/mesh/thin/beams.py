@@ -1,4 +1,4 @@
-"""Line meshes with a rectangular section as hex20, one over the section.
+"""Line meshes with a section as hex20: one over a rectangle or an ellipse, a ring of them over a box or a pipe.
 
 The section at a node lies across the mean tangent of the elements there, as far as these are within 20 degrees of each other
 and have the same section; others have a section of their own there, and the node is a knot, as for shells."""
@@ -19,6 +19,19 @@ POINTS = np.vstack(
     [CORNERS, (CORNERS + np.roll(CORNERS, -1, axis=0)) / 2.0]
 )  # of a section: corners, edges between them
 COUNT = len(POINTS)
+AREA = 2.0 + 8.0 / 3.0 * (np.sqrt(2.0) - 1.0)  # of an ellipse of radius 1: a square and four segments of parabolas
+EVEN = np.sqrt(np.pi / AREA)  # times the radius: the same area as the circle
+
+
+def _round(sides: int) -> Vector:
+    """Points (2 sides, 2) of a circle of diameter 1: corners, from that of the square on, then those between them."""
+    angles = 2.0 * np.pi / sides * np.concatenate([np.arange(sides), np.arange(sides) + 0.5]) + 0.75 * np.pi
+    return np.stack([np.cos(angles), np.sin(angles)], axis=1) / 2.0
+
+
+OUTLINES = {"rectangle": POINTS, "ellipse": _round(4), "box": POINTS, "pipe": _round(8)}  # over the widths
+HOLLOW = ("box", "pipe")
+CURVED = ("ellipse", "pipe")
 _START, _END, _MIDDLE = 0, 1, 2
 _HEX20 = (  # (which node of the line, which point of its section)
     (_START, 0), (_END, 0), (_END, 1), (_START, 1), (_START, 3), (_END, 3), (_END, 2), (_START, 2),
@@ -31,22 +44,29 @@ _HEX20 = (  # (which node of the line, which point of its section)
 class Beam:
     """cells: (n, 3) rows of points: start, end, middle. Of each: axis (n, 3), near which the first direction n1 of the
     section lies; widths (n, 2) along n1 and n2 = tangent x n1 [length]; offsets (n, 2) of the nodes from the centre,
-    over these."""
+    over these; walls (n,) of hollow ones [length]. form: a name in ``OUTLINES``. Every node of round ones lies on the circle
+    or ellipse, between the nodes there are parabolas: the area of an ellipse is 1.2 % smaller, its second moments are 2.3 %,
+    those of a pipe, of eight cells, 0.1 % and 0.2 %."""
 
     cells: Numbers
     axis: Vector
     widths: Vector
     offsets: Vector
+    walls: Vector
+    form: str = "rectangle"
 
 
 @dataclass(frozen=True)
 class Sections:
-    """points: (8 s, 3), eight for each section: corners, then the middles of its sides; node: (s,) which it stands on;
-    cells: (n, 20) rows of ``points``."""
+    """points: (s m, 3), m for each section: corners, then the middles of sides, as in ``OUTLINES``; of hollow ones corners
+    outside, corners inside, middles outside, inside, and between corners. node: (s,) which it stands on; cells: (n, c, 20)
+    rows of ``points``, whose first face is an outer one of hollow sections, the second an inner one; shares: (s, m, k) of
+    its (outer) corners in the motion of each of its points where the section stays one and strains evenly."""
 
     points: Vector
     node: Numbers
     cells: Numbers
+    shares: Vector
 
 
 def expand_beams(points: Vector, beam: Beam) -> Sections:
@@ -65,7 +85,8 @@ def expand_beams(points: Vector, beam: Beam) -> Sections:
         raise ValueError(int(np.flatnonzero(short.any(axis=1))[0]))
     tangents, second = tangents / lengths[..., None], second / sizes[..., None]
     node = beam.cells.ravel()
-    own = np.repeat(np.concatenate([beam.widths, beam.offsets], axis=1), 3, axis=0)
+    each = [beam.widths, beam.offsets * beam.widths, beam.walls[:, None]]
+    own = np.repeat(np.concatenate(each, axis=1), 3, axis=0)
     section, first = _sections(node, tangents.reshape(-1, 3), second.reshape(-1, 3), own)
     count = len(first)
     along, across = np.zeros((count, 3)), np.zeros((count, 3))
@@ -75,12 +96,49 @@ def expand_beams(points: Vector, beam: Beam) -> Sections:
     across -= (across * along).sum(axis=1, keepdims=True) * along
     across /= np.linalg.norm(across, axis=1, keepdims=True)
     frame = np.stack([np.cross(across, along), across], axis=1)  # n1, n2
-    widths, offsets = own[first, :2], own[first, 2:]
-    place = (POINTS[None] - offsets[:, None, :]) * widths[:, None, :]
-    at = points[node[first]][:, None, :] + np.einsum("spa,sax->spx", place, frame)
+    widths, offsets, walls = own[first, None, :2], own[first, None, 2:4], own[first, None, 4:]
+    place, quads = OUTLINES[beam.form] * widths, np.arange(COUNT)[None]
+    corners = place.shape[1] // 2
+    if beam.form in HOLLOW:
+        outer, inner = _box(widths, walls) if beam.form == "box" else (place, place * (1.0 - 2.0 * walls / widths))
+        corners = outer.shape[1] // 2
+        place, quads = _hollow(outer, inner), _ring(corners)
+    shares = 1.0 / corners + place @ np.linalg.pinv(place[:, :corners])
+    at = points[node[first]][:, None, :] + np.einsum("spa,sax->spx", place - offsets, frame)
     of = section.reshape(-1, 3)
-    cells = np.stack([COUNT * of[:, which] + point for which, point in _HEX20], axis=1)
-    return Sections(at.reshape(-1, 3), node[first], cells)
+    cells = np.stack([place.shape[1] * of[:, which, None] + quads[:, point] for which, point in _HEX20], axis=2)
+    return Sections(at.reshape(-1, 3), node[first], cells, np.where(np.abs(shares) > 1e-12, shares, 0.0))
+
+
+def _box(widths: Vector, walls: Vector) -> tuple[Vector, Vector]:
+    """Outlines (s, 24, 2) outside and inside: three points a side, so that a short cell at each end of a wall lets it warp
+    towards the corner; with one cell a wall, torsion is as stiff as without warping."""
+    ways = np.roll(CORNERS, -1, axis=0) - CORNERS  # along the sides
+    inwards = walls[..., None] * np.stack([-ways[:, 1], ways[:, 0]], axis=1)[:, None]
+    start, end = CORNERS * widths, np.roll(CORNERS, -1, axis=0) * widths
+    free = ((end - start) * ways).sum(axis=2, keepdims=True) - 2.0 * walls
+    reach = (walls + np.minimum(walls, free / 3.0)) * ways
+    outer = np.stack([start, start + reach, end - reach], axis=2)
+    inner = outer + inwards
+    inner[:, :, 0] = CORNERS * (widths - 2.0 * walls)
+    corners = [points.reshape(len(widths), -1, 2) for points in (outer, inner)]
+    first, second = (np.concatenate([x, (x + np.roll(x, -1, axis=1)) / 2.0], axis=1) for x in corners)
+    return first, second
+
+
+def _hollow(outer: Vector, inner: Vector) -> Vector:
+    """Points (s, 5 k, 2) of sections between two outlines (s, 2 k, 2)."""
+    k = outer.shape[1] // 2
+    return np.concatenate(
+        [outer[:, :k], inner[:, :k], outer[:, k:], inner[:, k:], (outer[:, :k] + inner[:, :k]) / 2.0], axis=1
+    )
+
+
+def _ring(k: int) -> Numbers:
+    """Points of each of the k cells over such a section: corners from an outer one on, then the edges between them."""
+    i = np.arange(k)
+    j = (i + 1) % k
+    return np.stack([i, j, k + j, k + i, 2 * k + i, 4 * k + j, 3 * k + i, 4 * k + i], axis=1)
 
 
 def _sections(node: Numbers, tangent: Vector, second: Vector, own: Vector) -> tuple[Numbers, Numbers]:
