@@ -51,6 +51,7 @@ if TYPE_CHECKING:
         Term,
         Traction,
     )
+    from abut.model.stop import Stop, Stopped, add_stops
     from abut.output.options import Output
     from abut.output.pyvista_export import plot, to_pyvista
     from abut.output.results import write
@@ -77,6 +78,7 @@ _HOME = {  # of public names that do not come from abut.model
     **dict.fromkeys(("Beam", "MidForce", "MidSupport", "Shell", "Thick"), "abut.thin.records"),
     "thicken": "abut.thin.thicken",
     **dict.fromkeys(("LoadFactor", "load_factors"), "abut.solution.load_factor"),
+    **dict.fromkeys(("Stop", "Stopped", "add_stops"), "abut.model.stop"),
     **dict.fromkeys(("MidSurface", "mid_surface"), "abut.solution.mid_surface"),
 }  # fmt: skip
 
@@ -86,9 +88,9 @@ __all__ = [
     "Hold", "InputError", "Integration", "LinearElastic", "LoadFactor", "Mesh", "MidForce", "MidSupport", "MidSurface",
     "Model", "Moment", "MooneyRivlin", "NeoHooke", "NodalForce", "Ogden", "Orthotropic", "Output", "OverTemperature",
     "Penetration", "Plastic", "Preload", "Pressure", "PressureOverclosure", "Probe", "Rigid", "Rotation", "Shell",
-    "SingularModelError", "Solid", "Solution", "SolveOptions", "Spring", "Support", "Temperature", "Term", "Thick",
-    "Traction", "Yeoh", "add_surfaces", "check", "find_contacts", "from_meshio", "load_factors", "mid_surface", "plot",
-    "solve", "thicken", "to_pyvista", "write", "write_report",
+    "SingularModelError", "Solid", "Solution", "SolveOptions", "Spring", "Stop", "Stopped", "Support", "Temperature",
+    "Term", "Thick", "Traction", "Yeoh", "add_stops", "add_surfaces", "check", "find_contacts", "from_meshio",
+    "load_factors", "mid_surface", "plot", "solve", "thicken", "to_pyvista", "write", "write_report",
 ]  # fmt: skip
 
 
