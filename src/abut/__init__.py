@@ -51,11 +51,13 @@ if TYPE_CHECKING:
         Term,
         Traction,
     )
+    from abut.model.stop import Stop, Stopped, add_stops
     from abut.output.options import Output
     from abut.output.pyvista_export import plot, to_pyvista
     from abut.output.results import write
     from abut.report import write_report
     from abut.solution import Solution
+    from abut.solution.load_factor import LoadFactor, load_factors
     from abut.solution.mid_surface import MidSurface, mid_surface
     from abut.thin.records import Beam, MidForce, MidSupport, Shell, Thick
     from abut.thin.thicken import thicken
@@ -75,18 +77,20 @@ _HOME = {  # of public names that do not come from abut.model
     "from_meshio": "abut.mesh.from_meshio", "PressureOverclosure": "abut.contact.overclosure", "check": "abut.diagnosis",
     **dict.fromkeys(("Beam", "MidForce", "MidSupport", "Shell", "Thick"), "abut.thin.records"),
     "thicken": "abut.thin.thicken",
+    **dict.fromkeys(("LoadFactor", "load_factors"), "abut.solution.load_factor"),
+    **dict.fromkeys(("Stop", "Stopped", "add_stops"), "abut.model.stop"),
     **dict.fromkeys(("MidSurface", "mid_surface"), "abut.solution.mid_surface"),
 }  # fmt: skip
 
 __all__ = [
     "AbutError", "Amplitude", "Anisotropic", "ArrudaBoyce", "Axes", "Beam", "BodyForce", "Buckling", "Centrifugal",
     "Contact", "ConvergenceError", "Coupling", "Equation", "Force", "FoundContact", "Frequencies", "Gravity", "Hencky",
-    "Hold", "InputError", "Integration", "LinearElastic", "Mesh", "MidForce", "MidSupport", "MidSurface", "Model",
-    "Moment", "MooneyRivlin", "NeoHooke", "NodalForce", "Ogden", "Orthotropic", "Output", "OverTemperature",
+    "Hold", "InputError", "Integration", "LinearElastic", "LoadFactor", "Mesh", "MidForce", "MidSupport", "MidSurface",
+    "Model", "Moment", "MooneyRivlin", "NeoHooke", "NodalForce", "Ogden", "Orthotropic", "Output", "OverTemperature",
     "Penetration", "Plastic", "Preload", "Pressure", "PressureOverclosure", "Probe", "Rigid", "Rotation", "Shell",
-    "SingularModelError", "Solid", "Solution", "SolveOptions", "Spring", "Support", "Temperature", "Term", "Thick",
-    "Traction", "Yeoh", "add_surfaces", "check", "find_contacts", "from_meshio", "mid_surface", "plot", "solve",
-    "thicken", "to_pyvista", "write", "write_report",
+    "SingularModelError", "Solid", "Solution", "SolveOptions", "Spring", "Stop", "Stopped", "Support", "Temperature",
+    "Term", "Thick", "Traction", "Yeoh", "add_stops", "add_surfaces", "check", "find_contacts", "from_meshio",
+    "load_factors", "mid_surface", "plot", "solve", "thicken", "to_pyvista", "write", "write_report",
 ]  # fmt: skip
 
 

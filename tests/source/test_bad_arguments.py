@@ -18,7 +18,7 @@ from abut.mesh import make
 BARE = (AttributeError, KeyError, IndexError, TypeError, ValueError)
 NOTHING = (None, 3, "", 3.5, [], {})  # what a user may have in a variable that should hold something else
 ERRORS = {name for name in abut.__all__ if isinstance(getattr(abut, name), type) and "Error" in name}
-RESULTS = {"FoundContact", "MidSurface", "Solution", "Thick"}  # abut makes these
+RESULTS = {"FoundContact", "LoadFactor", "MidSurface", "Solution", "Stopped", "Thick"}  # abut makes these
 LISTS = (
     "solids", "supports", "loads", "contacts", "equations", "rigid", "probes", "rotations", "couplings", "preloads",
     "springs", "holds", "penetrations",
@@ -90,17 +90,20 @@ VALID: dict[str, tuple[dict[str, Any], Callable[[Any], object]]] = {  # argument
     "Buckling": ({"count": 1}, within("modes")),
     "SolveOptions": ({}, lambda solve: replace(MODEL, solve=solve)),
     "Spring": ({"name": "s", "on": "b.right", "x": 1.0}, within("springs")),
+    "Stop": ({"on": "b.right", "direction": (1.0, 0.0)}, lambda stop: abut.add_stops(MESH, [stop])),
     "Support": ({"on": "b.right", "x": 0.0}, within("supports")),
     "Temperature": ({"on": "b", "value": 1.0}, within("loads")),
     "Term": ({"on": 0, "component": "x", "coefficient": 1.0}, lambda term: within("equations")(abut.Equation([term]))),
     "Traction": ({"on": "b.right", "value": (1.0, 0.0)}, within("loads")),
     "Yeoh": ({"bulk": 100.0, "c10": 1.0}, kept),
+    "add_stops": ({"mesh": MESH, "stops": [abut.Stop("b.right", (1.0, 0.0))]}, kept),
     "add_surfaces": ({"mesh": MESH, "found": ()}, kept),
     "check": ({"model": MODEL}, kept),
     "find_contacts": ({"mesh": MESH}, kept),
     "from_meshio": ({"mesh": SimpleNamespace(points=MESH.points, cells=[("quad", b.nodes) for b in MESH.blocks])}, kept),
 }  # fmt: skip
 OF_SOLUTIONS = {
+    "load_factors",
     "mid_surface",
     "plot",
     "solve",

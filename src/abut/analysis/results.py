@@ -23,7 +23,7 @@ from abut.analysis.overlap import covered_elsewhere, overlaps
 from abut.analysis.penetrations import penetration_results
 from abut.analysis.preloads import preload_results
 from abut.analysis.stress_error import stress_error
-from abut.analysis.surface_stress import normal_stress
+from abut.analysis.surface_stress import loaded_points, normal_stress
 from abut.bodies.averages import averages
 from abut.bodies.recovery import at_points, recovered
 from abut.cells import MAX_FACET_NODES
@@ -310,6 +310,7 @@ def _contacts(
     largest = [pair.space.transfer @ p[pair.normal] for pair, p in zip(balance.pairs, end.pressures) if not pair.tied]
     beside = max([float(np.abs(p).max(initial=0.0)) for p in largest] + references + [0.0])
     around = []
+    loaded = loaded_points(model)
     others = covered_elsewhere(balance.pairs, end.pressures)
     for pair, reference, elsewhere, support in zip(balance.pairs, references, others, end.supports):
         constant, varying = offsets(model, pair.contact)
@@ -317,7 +318,7 @@ def _contacts(
         overlap = overlaps(pair, moved, constant + float(varying @ balance.factors))
         free, cells = free_axes(model, constraints, pair), None
         if not pair.tied:
-            cells = normal_stress(model.mesh, pair.contactor, stress)
+            cells = normal_stress(model.mesh, pair.contactor, stress, loaded)
         gives = _gives(model, constraints, pair)
         along = None if model.finite or pair.tied else slid(pair, end.nodal, held=gives == 0.0)
         sides = model.measured(pair.contact) if pair.contact in model.contacts and not pair.tied else None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,7 @@ from abut.cells import CELLS
 from abut.contact.geometry import side_normals
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
+from abut.model import Force, Model, Pressure, Traction
 
 SIMPLEX = ("tri3", "tet4")  # one stress a cell: a node's average is that at the mean of its cells' middles
 ROWS = ((0, 3, 5), (3, 1, 4), (5, 4, 2))  # of a tensor, in xx yy zz xy yz zx
@@ -19,11 +20,23 @@ EVEN = 1e-6  # smallest over largest eigenvalue of a star of nodes' second momen
 Array = NDArray[np.float64]
 
 
-def normal_stress(mesh: Mesh, contactor: Surface, stress: Array) -> Array:
-    """Compression along the normals at the points of the contactor split at its creases, (n_points,), NaN where it is known
-    worse than the pressure: linear quadrilaterals, hexahedra and wedges have at their surface the stress of their middle.
+def loaded_points(model: Model) -> NDArray[np.int64]:
+    """Point numbers of the mesh where loads on surfaces act."""
+    on = {str(load.on) for load in model.loads if isinstance(load, (Force, Pressure, Traction))} & {
+        *model.mesh.surfaces
+    }
+    return np.unique(np.concatenate([np.empty(0, np.int64), *(model.mesh.nodes_of(name) for name in on)]))
 
-    contactor: where it is now, with all points of the mesh; stress: (n_points, 6) nodal averages there."""
+
+def normal_stress(
+    mesh: Mesh, contactor: Surface, stress: Array, loaded: Sequence[int] | NDArray[np.int64] = ()
+) -> Array:
+    """Compression along the normals at the points of the contactor split at its creases, (n_points,), NaN where it is known
+    worse than the pressure: linear quadrilaterals, hexahedra and wedges have at their surface the stress of their middle,
+    and where loads act too the stress carries both.
+
+    contactor: where it is now, with all points of the mesh; stress: (n_points, 6) nodal averages there; loaded: point
+    numbers where loads on surfaces act."""
     split, normals = side_normals(contactor)
     owner, used = np.arange(len(split.points)), split.nodes >= 0
     owner[split.nodes[used]] = contactor.nodes[used]
@@ -33,6 +46,7 @@ def normal_stress(mesh: Mesh, contactor: Surface, stress: Array) -> Array:
         nodes = contactor.nodes[facets]
         which[nodes[nodes >= 0]] = True
     there = np.linalg.norm(normals, axis=1) > 0.0
+    there &= ~np.isin(owner, loaded)
     result = np.full(len(split.points), np.nan)
     plain = there & (quadratic & ~simplex & ~other)[owner]
     result[plain] = _compression(normals[plain], stress[owner[plain]])

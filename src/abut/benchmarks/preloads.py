@@ -73,41 +73,45 @@ VDI = {"m12": (12.0, 42.0, 16.63, 13.5, 30.0, 7.5980e-7), "m16": (16.0, 60.0, 22
 STEEL = 205e3
 
 
-def _vdi(size: str) -> Benchmark:
-    """Half of two plates under a rigid head, by the plane of symmetry between them."""
-    bolt, clamped, head, hole, outer, exact = VDI[size]
+def clamped_plates(bolt: float, clamped: float, head: float, hole: float, outer: float, level: int = 0) -> Model:
+    """Half of two plates that a bolt of a rigid head clamps, by the plane of symmetry between them; diameters, and the
+    length that is clamped."""
+    n = 2**level
+    radii: Any = [*np.linspace(hole / 2, head / 2, 4 * n + 1)[:-1], *np.geomspace(head / 2, outer / 2, 10 * n + 1)]
+    parts = {
+        "bolt": rectangle((0.0, bolt / 2), (0.0, clamped / 2), (2, 8), "quad8"),
+        "plate": rectangle((0.0, 1.0), (0.0, clamped / 2), (radii, 14 * n), "quad8"),
+        "head": rectangle((0.0, head / 2), (clamped / 2, clamped / 2 + 6.0), (4, 1)),
+    }
+    return Model(
+        join(parts),
+        [Solid("bolt", LinearElastic(STEEL, 0.0)), Solid("plate", LinearElastic(STEEL, 0.3))],
+        [Support("bolt.bottom", y=0), Support("plate.bottom", y=0)],
+        (),
+        [
+            Contact("bolt.top", "head.bottom", "bolt", kind="bilateral"),
+            Contact("plate.top", "head.bottom", "plate"),
+        ],
+        plane="axisymmetric",
+        rigid=[Rigid("head")],
+        preloads=[Preload("bolt", "bolt", force=FORCE)],
+    )
+
+
+def compliance(solution: Solution, bolt: float, clamped: float) -> float:
+    """Of both plates: what the shortening is more than the lengthening of the shank."""
     shank = clamped / (STEEL * np.pi * bolt**2 / 4.0)
+    return float(2.0 * solution.steps[-1].preloads["bolt"].shortening / FORCE - shank)
 
-    def model(level: int) -> Model:
-        n = 2**level
-        radii: Any = [*np.linspace(hole / 2, head / 2, 4 * n + 1)[:-1], *np.geomspace(head / 2, outer / 2, 10 * n + 1)]
-        parts = {
-            "bolt": rectangle((0.0, bolt / 2), (0.0, clamped / 2), (2, 8), "quad8"),
-            "plate": rectangle((0.0, 1.0), (0.0, clamped / 2), (radii, 14 * n), "quad8"),
-            "head": rectangle((0.0, head / 2), (clamped / 2, clamped / 2 + 6.0), (4, 1)),
-        }
-        return Model(
-            join(parts),
-            [Solid("bolt", LinearElastic(STEEL, 0.0)), Solid("plate", LinearElastic(STEEL, 0.3))],
-            [Support("bolt.bottom", y=0), Support("plate.bottom", y=0)],
-            (),
-            [
-                Contact("bolt.top", "head.bottom", "bolt", kind="bilateral"),
-                Contact("plate.top", "head.bottom", "plate"),
-            ],
-            plane="axisymmetric",
-            rigid=[Rigid("head")],
-            preloads=[Preload("bolt", "bolt", force=FORCE)],
-        )
 
-    def measure(solution: Solution) -> dict[str, float]:
-        return {"compliance of the plates": 2.0 * solution.steps[-1].preloads["bolt"].shortening / FORCE - shank}
+def _vdi(size: str) -> Benchmark:
+    bolt, clamped, head, hole, outer, exact = VDI[size]
 
     return Benchmark(
         f"bolt-vdi-{size}",
         f"compliance of plates that an {size.upper()} bolt clamps, by what its shortening is more than its own",
-        model,
-        measure,
+        lambda level: clamped_plates(bolt, clamped, head, hole, outer, level),
+        lambda solution: {"compliance of the plates": compliance(solution, bolt, clamped)},
         {
             "compliance of the plates": Reference(
                 exact,

@@ -278,6 +278,7 @@ def _print_result(solution: Solution, directory: Path) -> None:
     from abut.diagnosis.cures import cure
     from abut.report.contact_words import force, lines
     from abut.report.modes import mode_lines
+    from abut.solution.load_factor import factor_line, load_factors
 
     if not (solution.converged and solution.complete):
         last = solution.steps[-1]
@@ -290,6 +291,8 @@ def _print_result(solution: Solution, directory: Path) -> None:
         )
         for line in lines(contact):
             show(f"  {line}")
+    for name, factor in load_factors(solution).items():
+        show(factor_line(name, factor))
     for result in solution.probes:
         show(f"probe '{result.name}': {_read(result)}")
     for modes in solution.modes:

@@ -34,6 +34,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "preloads": "bolts that are tightened: sections of bodies whose sides are drawn together",
         "springs": "springs to the ground, between points, and beds under surfaces",
         "holds": "supports that come or go on the way",
+        "stops": "rigid planes that surfaces run against",
         "penetrations": "fluids under pressure that enter contacts wherever these are open",
         "rotations": "surfaces, node sets and bodies that turn about an axis; not with small kinematics",
         "probes": "points, lines and sets of nodes whose results are listed for every step",
@@ -317,6 +318,11 @@ MEANINGS: dict[str, dict[str, str]] = {
         "released": "time at which its force is gone; left out: the end",
         "amplitude": "of x, y, z over time; left out: from 0 at since to 1 at reached",
     },
+    "StopTable": {
+        "direction": "of the motion that is stopped, of any length; axisymmetric: along the axis",
+        "distance": "from where the surface reaches farthest to the plane, 0 or more [length]",
+        "name": "of its contact and its body, for results; left out: stop and the name of the surface",
+    },
     "PenetrationTable": {
         "contact": "name of the contact, of which both surfaces feel the fluid wherever it gets",
         "source": "where the fluid comes from: a surface or node set that meets one of the contact's sides, or a point, "
@@ -369,18 +375,6 @@ MEANINGS: dict[str, dict[str, str]] = {
     "IntegrationTable": {
         "rule": "Gauss points, or Newton-Cotes points as in the paper",
         "points": "points for each direction of a segment; auto: as many as make it exact",
-    },
-    "ProbeTable": {
-        "name": "a name of your choice, also of its file probe_NAME.csv",
-        "at": "a point of the undeformed mesh [length]",
-        "line": "two points, start and end [length]",
-        "on": "name of the node set, surface or body whose nodes are read",
-        "points": "how many points on the line, both ends among them; left out: 50",
-        "of": "what to read; left out: all there is, plastic strains only where a body may yield, pressure and gap only on "
-        "surfaces of contacts, principal stresses and reactions not at all",
-        "contact": "name of the contact whose pressure and gap are read; left out: the one that the probe lies on",
-        "body": "name of the body that is read where points lie on several; left out: the first in the mesh",
-        "steps": "steps in its table: all, last, n for every n-th, or a list of numbers; the last one always is",
     },
     **RUN,
 }

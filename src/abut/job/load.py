@@ -48,6 +48,7 @@ from abut.model import (
     Term,
 )
 from abut.model.conditions import TURNS
+from abut.model.stop import Stop, add_stops
 from abut.output.options import Output
 from abut.types import Json
 
@@ -151,8 +152,10 @@ def _model(file: JobFile, folder: Path, refine: int) -> tuple[Model, Resolved]:
         how = thin.integration(s.body, s.integration)
         solids.append(Solid(s.body, materials[s.material], s.temperature, how))
     resolved = resolve_contacts(file.contacts, thin.thick.mesh, solids, file.model.kinematics == "finite")
+    stops = [Stop(**values(s, f"stops[{i}]")) for i, s in enumerate(file.stops)]
+    stopped = add_stops(resolved.mesh, stops, file.model.plane)
     model = Model(
-        mesh=resolved.mesh,
+        mesh=stopped.mesh,
         plane=file.model.plane,
         kinematics=file.model.kinematics,
         solids=solids,
@@ -168,13 +171,13 @@ def _model(file: JobFile, folder: Path, refine: int) -> tuple[Model, Resolved]:
             *(_load(load, f"loads[{i}]") for i, load in enumerate(file.loads) if i not in thin.loads),
             *thin.thick.loads,
         ],
-        contacts=resolved.contacts,
+        contacts=[*resolved.contacts, *stopped.contacts],
         solve=SolveOptions(**file.solve.model_dump()),
         equations=[
             *(_equation(equation, f"equations[{i}]") for i, equation in enumerate(file.equations)),
             *thin.thick.equations,
         ],
-        rigid=[Rigid(**values(r, f"rigid[{i}]")) for i, r in enumerate(file.rigid)],
+        rigid=[*(Rigid(**values(r, f"rigid[{i}]")) for i, r in enumerate(file.rigid)), *stopped.rigid],
         rotations=[Rotation(**values(r, f"rotations[{i}]")) for i, r in enumerate(file.rotations)],
         couplings=[
             *(Coupling(**values(c, f"couplings[{i}]")) for i, c in enumerate(file.couplings)),

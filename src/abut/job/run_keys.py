@@ -1,4 +1,4 @@
-"""Descriptions of the keys of a job file that say how it is run, as ``abut.job.key_descriptions``."""
+"""Descriptions of the keys of a job file that say how it is run and what is read, as ``abut.job.key_descriptions``."""
 
 from __future__ import annotations
 
@@ -35,5 +35,17 @@ RUN: dict[str, dict[str, str]] = {
         "principal-stress is left out unless it is named",
         "formats": "vtu for ParaView; frd for CalculiX GraphiX: fields.frd, written at the end of the run",
         "compression": "fast, or small: VTU files up to two fifths smaller, which take longer to write; the same numbers",
+    },
+    "ProbeTable": {
+        "name": "a name of your choice, also of its file probe_NAME.csv",
+        "at": "a point of the undeformed mesh [length]",
+        "line": "two points, start and end [length]",
+        "on": "name of the node set, surface or body whose nodes are read",
+        "points": "how many points on the line, both ends among them; left out: 50",
+        "of": "what to read; left out: all there is, plastic strains only where a body may yield, pressure and gap only on "
+        "surfaces of contacts, principal stresses and reactions not at all",
+        "contact": "name of the contact whose pressure and gap are read; left out: the one that the probe lies on",
+        "body": "name of the body that is read where points lie on several; left out: the first in the mesh",
+        "steps": "steps in its table: all, last, n for every n-th, or a list of numbers; the last one always is",
     },
 }

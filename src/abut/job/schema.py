@@ -21,6 +21,7 @@ from abut.model.hold import STAY
 from abut.model.kinematics import KINEMATICS
 from abut.model.probe import QUANTITIES
 from abut.model.step_choice import WORDS as STEPS
+from abut.model.stop import Stop
 from abut.thin.records import Beam, Shell
 from abut.types import Json
 
@@ -166,6 +167,7 @@ HOLD = table_of(
     {**dict.fromkeys("xyz", Led), "since": Time, **dict.fromkeys(("reached", "until", "released"), Time | None)},
     "a support that comes or goes on the way",
 )
+STOP = table_of(Stop, meaning="a rigid plane that a surface runs against")
 PENETRATION = table_of(
     Penetration, {"source": str | list[Number]}, "a fluid under pressure that enters a contact where it is open"
 )
@@ -236,6 +238,7 @@ class JobFile(Table):
     preloads: list[Annotated[Table, Of(PRELOAD)]] = []
     springs: list[Annotated[Table, Of(SPRING)]] = []
     holds: list[Annotated[Table, Of(HOLD)]] = []
+    stops: list[Annotated[Table, Of(STOP)]] = []
     penetrations: list[Annotated[Table, Of(PENETRATION)]] = []
     probes: list[ProbeTable] = []
     steps: list[StepTable] = []

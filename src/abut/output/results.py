@@ -39,6 +39,7 @@ from abut.output.options import EVERYTHING, Output, single
 from abut.report import Origin, write_report
 from abut.solution import PenetrationResult, PreloadResult, Solution, Step, mid_surface
 from abut.solution.grids import contact_grid
+from abut.solution.load_factor import load_factors
 from abut.types import Json
 
 
@@ -186,6 +187,7 @@ def summary(solution: Solution) -> Json:
         "processes": solution.processes,
         "steps": [{**_step_summary(step), "time": step.factor * solution.model.solve.end} for step in solution.steps],
         **modes_summary(solution),
+        **_load_factors(solution),
         "certificate": {
             "passed": all(check.passed for check in solution.certificate),
             "checks": [
@@ -208,6 +210,12 @@ def summary(solution: Solution) -> Json:
         "timings": {name: round(seconds, 6) for name, seconds in solution.timings.items()},
         "versions": versions(),
     }
+
+
+def _load_factors(solution: Solution) -> Json:
+    """At the end of the last step; nothing without preloads."""
+    found = load_factors(solution) if solution.model.preloads else {}
+    return {"load_factors": {name: vars(factor) for name, factor in found.items()}} if found else {}
 
 
 def status(solution: Solution) -> str:

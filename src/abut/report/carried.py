@@ -11,6 +11,9 @@ def carried_tables(solution: Solution) -> list[tuple[list[str], list[list[str]],
     found = []
     if solution.model.preloads:
         found.append((preloads.HEAD, preloads.preload_rows(solution), "What preloads carry"))
+        found.append(
+            (preloads.FACTOR_HEAD, preloads.factor_rows(solution), "What preloads take of loads, after tightening")
+        )
     if solution.model.penetrations:
         rows = penetrations.penetration_rows(solution)
         found.append((penetrations.HEAD, rows, "How far fluids have got into contacts, and what they exert"))

@@ -8,8 +8,10 @@ import numpy as np
 
 from abut.model.preload import sections
 from abut.solution import Solution
+from abut.solution.load_factor import load_factors
 
 HEAD = ["preload", "step", "tension", "shear", "bending moment", "shortening", "state"]
+FACTOR_HEAD = ["preload", "load factor", "change of tension", "change of loads along it", "why there is none"]
 MOST = 200  # rows
 
 
@@ -17,6 +19,14 @@ def preload_rows(solution: Solution) -> list[list[str]]:
     """One for each preload and step, of the last steps where they are many."""
     rows = list(_rows(solution))
     return rows[-MOST:]
+
+
+def factor_rows(solution: Solution) -> list[list[str]]:
+    """One for each preload, at the end of the last step."""
+    return [
+        [name, "" if one.value is None else f"{one.value:.6g}", f"{one.tension:.6g}", f"{one.load:.6g}", one.why]
+        for name, one in load_factors(solution).items()
+    ]
 
 
 def _rows(solution: Solution) -> Iterator[list[str]]:
