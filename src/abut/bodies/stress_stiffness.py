@@ -20,7 +20,7 @@ HOOP = 2  # number of the stress round the axis
 
 
 def stress_stiffness(solids: Solids, stress: PointStress) -> Sparse:
-    """int (grad N)^T sigma (grad N), alike in all directions, theory (J4): (dim n_points, dim n_points) CSR, symmetric; with
+    """int (grad N)^T sigma (grad N), alike in all directions, theory (J5): (dim n_points, dim n_points) CSR, symmetric; with
     the hoop stress where axisymmetric. stress: as of ``point_stress``."""
     n, dim = solids.points.shape
     every: tuple[list[Array], ...] = ([np.zeros(0, np.int64)], [np.zeros(0, np.int64)], [np.zeros(0)])

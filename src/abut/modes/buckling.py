@@ -20,7 +20,7 @@ Vector = NDArray[np.float64]
 
 
 def buckling(model: Model, constraints: Constraints, held: Held, stressed: Sparse, wanted: Buckling) -> ModesResult:
-    """The smallest positive factors, theory (J5). stressed: (dim n_points, dim n_points) stiffness that stresses add, of
+    """The smallest positive factors, theory (J6). stressed: (dim n_points, dim n_points) stiffness that stresses add, of
     ``stress_stiffness``.
 
     Raises InputError where no stress makes anything buckle, or bodies are not held, ConvergenceError, and

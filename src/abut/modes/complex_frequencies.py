@@ -24,7 +24,7 @@ Complex = NDArray[np.complex128]
 def complex_frequencies(
     model: Model, constraints: Constraints, held: Held, slides: Sliding, wanted: Frequencies
 ) -> ModesResult:
-    """The lowest by size, theory (J6); one more than asked for where two that belong together would be parted.
+    """The lowest by size, theory (J4); one more than asked for where two that belong together would be parted.
 
     Raises InputError where no body has a density, ConvergenceError, and SingularModelError."""
     reduced = constraints.reduce(mass(model.mesh, densities(model)))

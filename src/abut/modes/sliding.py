@@ -29,7 +29,7 @@ class Sliding:
 
 
 def sliding(system: Linearised, state: State, held: Held) -> Sliding:
-    """Of a problem near a converged state, theory (J6). held: what contact holds there."""
+    """Of a problem near a converged state, theory (J4). held: what contact holds there."""
     parts = zip(system.pairs, *map(system.split, (state.multipliers, state.slipping)))
     blocks = [_follows(pair, system.factors, *part) for pair, *part in parts]
     count = len(state.multipliers)

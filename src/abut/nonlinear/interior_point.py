@@ -245,8 +245,8 @@ class _Step:
 
 
 def iterate(at: _Near, manner: Manner) -> Interior:
-    """One iteration, theory (V19): Mehrotra's predictor and corrector, with the coupling of bound and pressure, and
-        Gondzio's."""
+    """One iteration, theory (V18), (V19): Mehrotra's predictor and corrector, with the coupling of bound and pressure, and
+    Gondzio's."""
     here, mean = at.here, at.mean
     first = _direction(at, np.zeros_like(at.pressure), np.zeros_like(here.slip))
     length = min(1.0, first.length(at))
