@@ -107,16 +107,12 @@ public:
   void add_stiffness(std::size_t q, const Dense &tangent, const double *stress, bool half, double *block) {
     respond(q, tangent, stress);
     for (std::size_t i = 0; i < n; ++i) {
-      const double *g = &gradient[(q * n + i) * dim];
+      double g[dim]; // local, so that it stays in registers
+      std::copy_n(&gradient[(q * n + i) * dim], dim, g);
       for (std::size_t k = half ? i : 0; k < n; ++k) {
-        double *out = &block[(i * n + k) * dim * dim];
-        const double *r = &response[k * RESPONSE];
-        for (int m = 0; m < dim * dim; ++m) {
-          double sum = out[m];
-          for (int b = 0; b < dim; ++b)
-            sum += g[b] * r[b * dim * dim + m];
-          out[m] = sum;
-        }
+        double *const out = &block[(i * n + k) * dim * dim];
+        const double *const r = &response[k * RESPONSE];
+        add_product(g, r, out);
         if constexpr (axisymmetric)
           for (int c = 0; c < dim; ++c)
             out[c] += hoop[q * n + i] * r[dim * dim * dim + c];
@@ -178,6 +174,17 @@ protected:
 
   static constexpr int AT[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}}; // components of a symmetric tensor
   static constexpr int RESPONSE = dim * dim * dim + (axisymmetric ? dim : 0);
+
+  // Adds to out (dim, dim) the product of a gradient with a response (dim, dim, dim); they do not overlap, so that the
+  // compiler may take several components at a time.
+  static void add_product(const double (&g)[dim], const double *__restrict r, double *__restrict out) {
+    for (int m = 0; m < dim * dim; ++m) {
+      double sum = g[0] * r[m];
+      for (int b = 1; b < dim; ++b)
+        sum += g[b] * r[b * dim * dim + m];
+      out[m] += sum;
+    }
+  }
 
   static void tensor(const double *stress, double (&sigma)[3][3]) {
     for (int a = 0; a < 3; ++a) {
