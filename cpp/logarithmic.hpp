@@ -126,8 +126,15 @@ private:
       return;
     }
     const double apart = matrix[q][q] - matrix[p][p];
-    const double t = (apart >= 0 ? 2 : -2) * off / (std::abs(apart) + std::sqrt(apart * apart + 4 * off * off));
-    const double cosine = 1 / std::sqrt(1 + t * t), sine = t * cosine;
+    double t, cosine = 1;
+    if (off * off <= 1e-17 * apart * apart) { // a last, small turn: no roots are needed
+      t = off / apart;
+    } else {
+      const double root = std::sqrt(apart * apart + 4 * off * off), sum = std::abs(apart) + root;
+      t = (apart >= 0 ? 2 : -2) * off / sum;
+      cosine = std::sqrt(sum / (2 * root));
+    }
+    const double sine = t * cosine;
     constexpr int r = 3 - p - q;
     const double rp = matrix[r][p], rq = matrix[r][q];
     matrix[p][p] -= t * off, matrix[q][q] += t * off;
@@ -183,9 +190,11 @@ private:
 
   double second(int a, int b, int c) const {
     const double mean = (square[a] + square[b] + square[c]) / 3;
-    const double d[3] = {square[a] / mean - 1, square[b] / mean - 1, square[c] / mean - 1};
+    double d[3] = {square[a] - mean, square[b] - mean, square[c] - mean};
     const double far = std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
-    if (far < NEAR) { // the series of ln about the mean: no differences of near numbers
+    if (far < NEAR * mean) { // the series of ln about the mean: no differences of near numbers
+      for (double &value : d)
+        value /= mean;
       const double two = d[0] * d[1] + d[1] * d[2] + d[2] * d[0], three = d[0] * d[1] * d[2];
       return 2 * (-0.5 + two / 4 + three / 5 - two * two / 6) / (mean * mean);
     }
