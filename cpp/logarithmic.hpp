@@ -126,9 +126,11 @@ private:
       return;
     }
     const double apart = matrix[q][q] - matrix[p][p];
-    double t, cosine = 1;
-    if (off * off <= 1e-17 * apart * apart) { // a last, small turn: no roots are needed
-      t = off / apart;
+    double t, cosine;
+    if (off * off <= 1e-6 * apart * apart) { // small turns by series to all digits, without roots
+      const double x = off / apart;
+      t = x * (1 - x * x * (1 - 2 * x * x));
+      cosine = 1 - t * t * (1.0 / 2 - 3.0 / 8 * t * t);
     } else {
       const double root = std::sqrt(apart * apart + 4 * off * off), sum = std::abs(apart) + root;
       t = (apart >= 0 ? 2 : -2) * off / sum;
