@@ -209,23 +209,20 @@ private:
 
   double difference(int a, int b) const { return first[AT[a][b]]; }
 
-  // Adds what the stress contributes as the axes turn and the first differences change, in principal axes.
+  // Adds what the stress contributes as the axes turn and the first differences change, in principal axes: pairs of
+  // components that share an index.
   void add_bending(const double *stress, double (&c)[STRAINS][STRAINS]) const {
     const Second second(*this);
     const auto &f = second.of;
-    double sigma[3][3];
-    for (int i = 0; i < 3; ++i)
-      for (int k = 0; k < 3; ++k)
-        sigma[i][k] = stress[AT[i][k]];
-    for (int t = 0; t < STRAINS; ++t) {
-      const int p = I[t], q = J[t];
-      double change[3][3] = {{0}}; // of shear strain both ways: half of the doubled one
-      for (int i = 0; i < 3; ++i) {
-        change[i][q] += f[i][p][q] * sigma[i][p] / 2, change[i][p] += f[i][q][p] * sigma[i][q] / 2;
-        change[p][i] += f[p][q][i] * sigma[q][i] / 2, change[q][i] += f[q][p][i] * sigma[p][i] / 2;
-      }
-      for (int s = 0; s < STRAINS; ++s)
-        c[s][t] += change[I[s]][J[s]];
+    for (int a = 0; a < 3; ++a)
+      c[a][a] += 2 * f[a][a][a] * stress[a];
+    for (int s = 3; s < STRAINS; ++s) {
+      const int i = I[s], k = J[s], next = s == 5 ? 3 : s + 1, last = 12 - s - next; // the other shear components
+      const double at_i = f[i][i][k] * stress[s], at_k = f[i][k][k] * stress[s];
+      const double mixed = f[0][1][2] * stress[last] / 2;
+      c[i][s] += at_i, c[s][i] += at_i, c[k][s] += at_k, c[s][k] += at_k;
+      c[s][s] += (f[i][i][k] * stress[i] + f[i][k][k] * stress[k]) / 2;
+      c[s][next] += mixed, c[next][s] += mixed;
     }
   }
 
