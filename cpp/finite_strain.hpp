@@ -107,16 +107,14 @@ public:
   void add_stiffness(std::size_t q, const Dense &tangent, const double *stress, bool half, double *block) {
     respond(q, tangent, stress);
     for (std::size_t i = 0; i < n; ++i) {
-      const double *g = &gradient[(q * n + i) * dim];
+      double g[dim]; // local, so that it stays in registers
+      std::copy_n(&gradient[(q * n + i) * dim], dim, g);
       for (std::size_t k = half ? i : 0; k < n; ++k) {
-        double *out = &block[(i * n + k) * dim * dim];
-        const double *r = &response[k * RESPONSE];
-        for (int m = 0; m < dim * dim; ++m) {
-          double sum = out[m];
-          for (int b = 0; b < dim; ++b)
-            sum += g[b] * r[b * dim * dim + m];
-          out[m] = sum;
-        }
+        // They do not overlap, so that the compiler may take several components at a time.
+        double *__restrict out = &block[(i * n + k) * dim * dim];
+        const double *__restrict r = &response[k * RESPONSE];
+        for (int m = 0; m < dim * dim; ++m)
+          out[m] += along<dim * dim>(g, r + m);
         if constexpr (axisymmetric)
           for (int c = 0; c < dim; ++c)
             out[c] += hoop[q * n + i] * r[dim * dim * dim + c];
@@ -178,6 +176,14 @@ protected:
 
   static constexpr int AT[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}}; // components of a symmetric tensor
   static constexpr int RESPONSE = dim * dim * dim + (axisymmetric ? dim : 0);
+
+  // Sum over the directions of a gradient, of what lies that many numbers apart.
+  template <int apart> static double along(const double (&g)[dim], const double *values) {
+    double sum = g[0] * values[0];
+    for (int b = 1; b < dim; ++b)
+      sum += g[b] * values[b * apart];
+    return sum;
+  }
 
   static void tensor(const double *stress, double (&sigma)[3][3]) {
     for (int a = 0; a < 3; ++a) {
@@ -273,15 +279,13 @@ protected:
     if constexpr (axisymmetric)
       moduli.own += w * stress[2];
     for (std::size_t k = 0; k < n; ++k) {
-      const double *g = &gradient[(q * n + k) * dim];
-      double *r = &response[k * RESPONSE];
-      const double *m = &moduli.plane[0][0][0][0];
-      for (int j = 0; j < dim * dim * dim; ++j) {
-        double sum = 0;
-        for (int d = 0; d < dim; ++d)
-          sum += m[d * dim * dim * dim + j] * g[d];
-        r[j] = sum;
-      }
+      double g[dim];
+      std::copy_n(&gradient[(q * n + k) * dim], dim, g);
+      double *__restrict r = &response[k * RESPONSE];
+      const double *__restrict m = &moduli.plane[0][0][0][0];
+      constexpr int size = dim * dim * dim;
+      for (int j = 0; j < size; ++j)
+        r[j] = along<size>(g, m + j);
       if constexpr (axisymmetric)
         add_hoop(moduli, g, hoop[q * n + k], r);
     }

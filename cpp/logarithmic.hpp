@@ -126,8 +126,17 @@ private:
       return;
     }
     const double apart = matrix[q][q] - matrix[p][p];
-    const double t = (apart >= 0 ? 2 : -2) * off / (std::abs(apart) + std::sqrt(apart * apart + 4 * off * off));
-    const double cosine = 1 / std::sqrt(1 + t * t), sine = t * cosine;
+    double t, cosine;
+    if (off * off <= 1e-6 * apart * apart) { // small turns by series to all digits, without roots
+      const double x = off / apart;
+      t = x * (1 - x * x * (1 - 2 * x * x));
+      cosine = 1 - t * t * (1.0 / 2 - 3.0 / 8 * t * t);
+    } else {
+      const double root = std::sqrt(apart * apart + 4 * off * off), sum = std::abs(apart) + root;
+      t = (apart >= 0 ? 2 : -2) * off / sum;
+      cosine = std::sqrt(sum / (2 * root));
+    }
+    const double sine = t * cosine;
     constexpr int r = 3 - p - q;
     const double rp = matrix[r][p], rq = matrix[r][q];
     matrix[p][p] -= t * off, matrix[q][q] += t * off;
@@ -183,9 +192,11 @@ private:
 
   double second(int a, int b, int c) const {
     const double mean = (square[a] + square[b] + square[c]) / 3;
-    const double d[3] = {square[a] / mean - 1, square[b] / mean - 1, square[c] / mean - 1};
+    double d[3] = {square[a] - mean, square[b] - mean, square[c] - mean};
     const double far = std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
-    if (far < NEAR) { // the series of ln about the mean: no differences of near numbers
+    if (far < NEAR * mean) { // the series of ln about the mean: no differences of near numbers
+      for (double &value : d)
+        value /= mean;
       const double two = d[0] * d[1] + d[1] * d[2] + d[2] * d[0], three = d[0] * d[1] * d[2];
       return 2 * (-0.5 + two / 4 + three / 5 - two * two / 6) / (mean * mean);
     }
@@ -198,23 +209,20 @@ private:
 
   double difference(int a, int b) const { return first[AT[a][b]]; }
 
-  // Adds what the stress contributes as the axes turn and the first differences change, in principal axes.
+  // Adds what the stress contributes as the axes turn and the first differences change, in principal axes: pairs of
+  // components that share an index.
   void add_bending(const double *stress, double (&c)[STRAINS][STRAINS]) const {
     const Second second(*this);
     const auto &f = second.of;
-    double sigma[3][3];
-    for (int i = 0; i < 3; ++i)
-      for (int k = 0; k < 3; ++k)
-        sigma[i][k] = stress[AT[i][k]];
-    for (int t = 0; t < STRAINS; ++t) {
-      const int p = I[t], q = J[t];
-      double change[3][3] = {{0}}; // of shear strain both ways: half of the doubled one
-      for (int i = 0; i < 3; ++i) {
-        change[i][q] += f[i][p][q] * sigma[i][p] / 2, change[i][p] += f[i][q][p] * sigma[i][q] / 2;
-        change[p][i] += f[p][q][i] * sigma[q][i] / 2, change[q][i] += f[q][p][i] * sigma[p][i] / 2;
-      }
-      for (int s = 0; s < STRAINS; ++s)
-        c[s][t] += change[I[s]][J[s]];
+    for (int a = 0; a < 3; ++a)
+      c[a][a] += 2 * f[a][a][a] * stress[a];
+    for (int s = 3; s < STRAINS; ++s) {
+      const int i = I[s], k = J[s], next = s == 5 ? 3 : s + 1, last = 12 - s - next; // the other shear components
+      const double at_i = f[i][i][k] * stress[s], at_k = f[i][k][k] * stress[s];
+      const double mixed = f[0][1][2] * stress[last] / 2;
+      c[i][s] += at_i, c[s][i] += at_i, c[k][s] += at_k, c[s][k] += at_k;
+      c[s][s] += (f[i][i][k] * stress[i] + f[i][k][k] * stress[k]) / 2;
+      c[s][next] += mixed, c[next][s] += mixed;
     }
   }
 

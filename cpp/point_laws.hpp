@@ -199,12 +199,16 @@ private:
       for (int s = 0; s < STRAINS; ++s)
         by[s] = ROOT * 2 * shear * normal[s] / slope;
       const double left = 2 * shear * (1 - bent);
-      for (int s = 0; s < STRAINS; ++s)
-        for (int t = 0; t < STRAINS; ++t) {
-          const double pair = s == t ? (s < 3 ? 1 : 0.5) : 0, both = s < 3 && t < 3;
-          c[s * STRAINS + t] = both * lambda + left * (pair - both / 3) - 2 * shear * ROOT * normal[s] * by[t] +
-                               bent * (normal[s] * (2 * shear * normal[t] + along * by[t]) - turning[s] * by[t]);
-        }
+      for (int s = 0; s < STRAINS; ++s) {
+        const double to_by = bent * (along * normal[s] - turning[s]) - 2 * shear * ROOT * normal[s];
+        const double to_normal = bent * 2 * shear * normal[s];
+        for (int t = 0; t < STRAINS; ++t)
+          c[s * STRAINS + t] = to_by * by[t] + to_normal * normal[t];
+        c[s * STRAINS + s] += s < 3 ? left : left / 2;
+      }
+      for (int s = 0; s < 3; ++s)
+        for (int t = 0; t < 3; ++t)
+          c[s * STRAINS + t] += lambda - left / 3;
     }
 
     // The new history; work is the mean of what flow takes at the beginning and at the end.

@@ -56,13 +56,13 @@ private:
     double more = 0, grown[3]; // I - 3
     for (int a = 0; a < 3; ++a)
       grown[a] = std::expm1(2 * e[a]), more += grown[a];
-    double first = 0, next = 0; // derivatives by I
+    double first = 0, next = 0, before = 0, power = 1; // derivatives by I; more to the powers n - 2 and n - 1
     for (std::size_t i = 0; i < powers.size(); ++i) {
       const double n = double(i + 1);
-      energy += powers[i] * std::pow(more, n);
-      first += n * powers[i] * std::pow(more, n - 1);
-      if (i)
-        next += n * (n - 1) * powers[i] * std::pow(more, n - 2);
+      energy += powers[i] * power * more;
+      first += n * powers[i] * power;
+      next += n * (n - 1) * powers[i] * before;
+      before = power, power *= more;
     }
     for (int a = 0; a < 3; ++a) {
       by[a] += 2 * first * grown[a];
@@ -74,12 +74,13 @@ private:
 
   // First and second derivative by ln J; swelling: J - 1.
   void add_volume(double swelling, double &slope, double &bend, double &energy) const {
-    double first = 0, second = 0;
+    double first = 0, second = 0, power = 1; // swelling to the power n - 2
     for (std::size_t i = 0; i < volume.size(); ++i) {
       const double n = 2 * double(i + 1);
-      energy += volume[i] * std::pow(swelling, n);
-      first += n * volume[i] * std::pow(swelling, n - 1);
-      second += n * (n - 1) * volume[i] * std::pow(swelling, n - 2);
+      energy += volume[i] * power * swelling * swelling;
+      first += n * volume[i] * power * swelling;
+      second += n * (n - 1) * volume[i] * power;
+      power *= swelling * swelling;
     }
     const double j = 1 + swelling;
     slope = j * first, bend = j * first + j * j * second;
