@@ -49,6 +49,7 @@ def test_examples_pass_every_line(name: str) -> None:
     assert quadratic_falls(solution, factor=20.0, rounding=3e-10)[1] == []
 
 
+@pytest.mark.long
 def test_a_coarse_accordion_fails() -> None:
     """Three facets for the two waves of pressure where a bend ends: off by 14 % there. The cure is a finer mesh, whichever
     line asks for it."""
@@ -70,6 +71,7 @@ def test_a_tampered_state_fails() -> None:
     assert {"overlap", "penetration"} <= seen(model, replace(last, unknowns=1.1 * apart), solution)
 
 
+@pytest.mark.long
 def test_a_pin_that_rocks_within_the_tolerance_passes() -> None:
     """It falls on its cradle in the first step. In the second it may turn by 1e-8 within the tolerance of forces, which
     leaves open 3e-5 of the little work that is done then, and 1e-12 of that of the fall; without the fall that fails. A pin

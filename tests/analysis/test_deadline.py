@@ -44,6 +44,7 @@ def test_a_step_may_take_one_iteration_more() -> None:
     unlimited.iterated()
 
 
+@pytest.mark.long
 def test_large_sliding_keeps_what_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
     """The steps before the end are those of a run without one, and restart goes on from the last of them."""
     whole = abut.solve(arched(0.0))

@@ -118,6 +118,7 @@ def test_parts_of_the_energy() -> None:
     assert own.contact == pytest.approx(0.0, abs=1e-9 * taken)
 
 
+@pytest.mark.long
 def test_smaller_steps_leave_less() -> None:
     """What stepping leaves open is of second order in a step, of first in all: four times as many steps leave a quarter."""
     far = []

@@ -15,6 +15,7 @@ def left_out(model: abut.Model) -> list[float]:
     return [check.value for check in solution.certificate if check.name.endswith("friction left out")]
 
 
+@pytest.mark.long
 def test_nodes_that_come_under_a_sharp_edge(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where slips cannot be looked at in what is covered late, as when the step does not converge with them, a plate's nodes
     carry no friction in the step in which they come under the block's edge, where the pressure peaks."""

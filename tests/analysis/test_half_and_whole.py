@@ -94,6 +94,7 @@ PLAIN = [(cell, SAME) for cell in ("tri3", "quad4", "quad8", "quad9", "tri6")]
 CUT = [("tet4", 3e-5), ("tet10", 1e-5), ("hex20", 1e-5)]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("cell", "same"), PLAIN + CUT)
 @pytest.mark.parametrize("swapped", [False, True])
 def test_pressures(cell: str, same: float, swapped: bool) -> None:
@@ -107,6 +108,7 @@ def test_pressures(cell: str, same: float, swapped: bool) -> None:
         assert np.abs(half - full).max() < same * np.abs(full).max()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("cell", "same"), [("hex8", SAME), ("tet4", 1e-6)])
 def test_displacements_of_tubes(cell: str, same: float) -> None:
     """Of linear cells, whose gaps hang on the surface's curvature, also at its free end. The whole is held across its middle

@@ -44,6 +44,7 @@ def of_limit(solution: abut.Solution) -> Check:
     return line
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kinematics", ["small", "finite"])
 def test_bar(kinematics: str) -> None:
     """The yield stress on the area; under finite strains on the one that elasticity leaves, (1 - nu Y / E)^2."""

@@ -47,6 +47,7 @@ def too_stiff(cell: str, poisson: float) -> float:
     return float(abut.solve(pad(cell, poisson)).contacts[0].force[1] / right - 1.0)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("cell", "poisson", "verdict"),
     [("quad4", 0.3, ""), ("quad4", 0.49, "warn"), ("quad4", 0.49999, "FAIL"), ("tri3", 0.499, "FAIL"),

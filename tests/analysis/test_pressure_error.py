@@ -64,6 +64,7 @@ HERTZ = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", HERTZ)
 def test_it_is_near_the_true_error(name: str) -> None:
     """Of contacts with two to five facets from the edge to the middle, a third of it to three times it: on so few the true

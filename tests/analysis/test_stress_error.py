@@ -113,6 +113,7 @@ def test_a_load_sets_the_mean() -> None:
     assert "in the mean" not in line.meaning
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("cell", "n"), [("quad4", 4), ("quad4", 8), ("tri3", 4), ("tri3", 8)])
 def test_the_force_of_a_block_pressed_down(cell: str, n: int) -> None:
     """The force does half of its way as strain energy: too high by the same share, of that on a mesh of second order that is

@@ -176,6 +176,7 @@ def test_friction_of_every_code() -> None:
     assert cases.with_options(rough, linear="auto", tied=False).contacts[0].friction == 0.3
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", [name for name in QUICK if name != "hertz-hex20"])
 def test_sizes(name: str) -> None:
     """The mesh comes near the number wanted (whole cells), and grows with it; the smallest is the one of two cells."""
@@ -193,6 +194,7 @@ def environment() -> dict[str, str]:
     return {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
 
 
+@pytest.mark.long
 def test_abut_child(tmp_path: Path) -> None:
     """A run in a process of its own gives a converged result with a force of about E strain area."""
     command = [sys.executable, str(BENCH / "abut_child.py"), "flat-hex8", "200"]

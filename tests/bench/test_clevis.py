@@ -19,6 +19,7 @@ MOST = 20  # linear solutions
 mesh = functools.cache(clevis.mesh)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("force", [100.0, 1000.0, 10000.0])
 @pytest.mark.parametrize("size", [3.8, 3.0])
 def test_a_clevis_converges(size: float, force: float) -> None:

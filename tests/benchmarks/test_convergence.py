@@ -33,6 +33,7 @@ CONVERGENCE = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", CONVERGENCE)
 def test_rates(name: str) -> None:
     for outcome in run(BENCHMARKS[name]):

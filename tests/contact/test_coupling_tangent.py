@@ -134,6 +134,7 @@ def test_lines(contactor: str, target: str, axisymmetric: bool) -> None:
     assert max(error(pair, degree) for degree in (0, 1, 2)) < TOLERANCE
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("target", FACES)
 @pytest.mark.parametrize("contactor", FACES)
 def test_faces(contactor: str, target: str) -> None:
@@ -152,6 +153,7 @@ def bulged(surface: Surface, seed: int) -> Surface:
     return replace(surface, bulge=bulge)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "pair", [*(lines((a, b)) for a in LINES for b in LINES), *(faces((a, b)) for a in FACES for b in FACES)]
 )
@@ -186,6 +188,7 @@ def test_planes_of_symmetry(pair: tuple[Surface, Surface]) -> None:
     assert np.abs(now.gap - plain.gap).max() > 1e-3 * np.abs(plain.gap).max()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("degree", [0, 1])
 def test_pressures_of_lower_degree(degree: int) -> None:
     assert error(faces(("quad8", "tri6")), degree) < TOLERANCE
@@ -205,6 +208,7 @@ def test_hidden_lines(kind: str) -> None:
     assert error(pair, options=replace(FIXED, reach=1.0)) < TOLERANCE
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("contactor", "target"), [("quad4", "quad4"), ("tri3", "quad8"), ("tri6", "quad9")])
 def test_hidden_faces(contactor: str, target: str) -> None:
     upper, far = faces((contactor, target), 0.0)

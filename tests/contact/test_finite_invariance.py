@@ -52,6 +52,7 @@ def solved(model: abut.Model) -> tuple[Solution, State]:
     return solution, states[-1]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("length", "force"), [(1e-3, 1.0), (1e3, 1.0), (1 / 25.4, 0.2248)])
 @pytest.mark.parametrize("pressure", ["P1", "dual"])
 def test_units(pressure: str, length: float, force: float) -> None:
@@ -64,6 +65,7 @@ def test_units(pressure: str, length: float, force: float) -> None:
     assert np.abs(other.displacement / length - one.displacement).max() < SAME
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("pressure", ["P1", "dual"])
 @pytest.mark.parametrize("dim", [2, 3])
 def test_position(dim: int, pressure: str) -> None:
@@ -77,6 +79,7 @@ def test_position(dim: int, pressure: str) -> None:
     assert np.abs(other.displacement - one.displacement @ turn.T).max() < SAME
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("pressure", ["P1", "dual"])
 def test_sides_swapped(pressure: str) -> None:
     """The force on the upper block, whichever side is the contactor: to the mesh, five facets on a block."""

@@ -46,6 +46,7 @@ def test_hertz_line(cell: str, n: int, limit: float, contactor: str) -> None:
     assert all(check.passed for check in solution.certificate)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("contactor", SIDES)
 @pytest.mark.parametrize(("n", "limit"), [(6, 0.015), (10, 0.01), (20, 0.004)])
 @pytest.mark.parametrize("cell", ["quad8", "tri6"])
@@ -143,6 +144,7 @@ def test_quarter_ball_in_the_mean(cell: str, sizes: tuple[int, ...], contactor: 
     assert (reported < averages).all()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("contactor", ["lower", "upper"])
 @pytest.mark.parametrize(("cell", "first"), [("tri3", 10), ("quad4", 6)])
 def test_on_the_axis(cell: str, first: int, contactor: str) -> None:

@@ -156,6 +156,7 @@ def test_isolated_loaded_nodes_fail() -> None:
     assert alternates > 1.0 - 1e-9  # all of it; more, as it is compared with what more than such peaks carry
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("space", ["auto", "dual"])
 def test_adjusted_in_part(space: str) -> None:
     """Gaps up to 0.005 are taken away, which on some meshes is a part of a facet: nothing is pushed apart, and the punch

@@ -45,6 +45,7 @@ def sinks(made: abut.Model) -> float:
     return -float(abut.solve(made).displacement[middle[0], 1])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("contactor", "target", "most"), [("punch.bottom", "block.top", 0.05), ("block.top", "punch.bottom", 0.12)]
 )
@@ -57,6 +58,7 @@ def test_a_punch_rests_on_its_flat(contactor: str, target: str, most: float) -> 
     assert errors[1] < 0.6 * errors[0]
 
 
+@pytest.mark.long
 def test_dual_functions_at_large_displacements() -> None:
     """The same of theory (G15)."""
     right = sinks(replace(model("quad8", 4), kinematics="finite"))

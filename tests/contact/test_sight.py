@@ -78,6 +78,7 @@ def test_hollow_facets_see_nothing_upside_down() -> None:
     assert covered.max() < 1.0 + 1e-4
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("cell", "friction", "most"), [("tri3", 0.3, 75), ("quad8", 0.0, 50)])
 def test_a_whole_body_slides_over_a_sharp_edge(cell: str, friction: float, most: int) -> None:
     """Named whole as by the faces that touch: until they could see through each other these runs ended at 0.70 and 0.69,

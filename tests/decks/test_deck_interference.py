@@ -104,6 +104,7 @@ def change(way: str) -> list[str]:
     return [f"*MODEL CHANGE, TYPE=CONTACT PAIR, {way}", "SLAVE, MASTER"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("nlgeom", ["", ", NLGEOM"])
 def test_pairs_that_come_and_go(nlgeom: str, tmp_path: Path) -> None:
     """All of the overlap is carried, nothing while the pair is removed, and all again."""

@@ -115,6 +115,7 @@ def test_stiffness_that_differs_ten_thousand_times(softer: str) -> None:
     assert_same_or_said(with_soft(blocks(6), softer, 1e-4))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("flat", [0.02, 50.0])
 def test_needles_and_flakes(flat: float) -> None:
     """Cells 50 times as wide as high, or as high as wide."""
@@ -161,6 +162,7 @@ def test_falls_back_on_the_direct_solver(monkeypatch: pytest.MonkeyPatch) -> Non
     assert fallen.contacts[0].pressure == pytest.approx(direct.contacts[0].pressure, rel=1e-12, nan_ok=True)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("cell", ["hex8", "tet10"])
 def test_constraint_function(cell: str) -> None:
     """The same answer in as many iterations, give or take two that stop a little short of the limit."""

@@ -83,6 +83,7 @@ def drawn(kinds: Mapping[str, Callable[[np.random.Generator], abut.Model]], seed
     check(list(kinds.values())[seed % len(kinds)], seed, tuple(MILLIMETRES_TO)[seed % 3 : seed % 3 + 1])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(DRAWS))
 def test_plane_assemblies(seed: int) -> None:
     drawn(PLANE, seed)

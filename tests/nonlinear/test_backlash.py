@@ -47,6 +47,7 @@ def test_a_torque_turns_a_wheel_through_its_backlash() -> None:
     assert mirrored == pytest.approx(force * [1.0, -1.0], rel=1e-3)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("torque", [0.02, 200.0])
 def test_with_friction_at_any_torque(torque: float) -> None:
     """The first point that meets the wheel comes round the axle, not straight: where it would have to be pulled to stick,

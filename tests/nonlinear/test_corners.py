@@ -57,6 +57,7 @@ def test_pin_that_falls() -> None:
     assert iterations < 50
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("aside", "most"), [(0.0, 55), (0.4, 55)])
 def test_wedge_into_round_block(aside: float, most: int) -> None:
     """Points on both faces at the wedge's corner take turns as the rubber comes round it. On the crown its edge spans two

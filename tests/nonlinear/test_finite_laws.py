@@ -199,6 +199,7 @@ def test_a_steep_exponential() -> None:
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("law", [Layer(50.0), Exponential(0.5, 0.02), "constraint-function"])
 def test_sliding(law: Any) -> None:
     """At each multiplier pressure and gap meet the law; the last iterations are quadratic."""

@@ -103,6 +103,7 @@ def test_plane_assemblies(seed: int) -> None:
     drawn(plane(seed), seed)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(SOLID_DRAWS))
 def test_solid_assemblies(seed: int) -> None:
     drawn(solid(seed), seed)

@@ -102,6 +102,7 @@ def test_extrapolation() -> None:
     assert np.allclose(guess.multipliers[n : n + 3], [1.5, 1.5, 0.5])
 
 
+@pytest.mark.long
 def test_momentum() -> None:
     """Forces on both sides add up to none at any state, to rounding; their couple vanishes once the law holds: the
     tractions' is sum t_k G_k, the pressures' is zero at every point."""
@@ -167,6 +168,7 @@ def test_patch_turned(friction: float) -> None:
     assert np.abs(solution.steps[-1].displacement - (x @ motion.T - x)).max() < 1e-9
 
 
+@pytest.mark.long
 def test_turned_small_example() -> None:
     """Tiny loads: the pressures of small displacements, whatever rigid motion comes on top."""
 
@@ -204,6 +206,7 @@ def test_quadratic_convergence() -> None:
         assert min(left[first : first + 3]) < 1e-8
 
 
+@pytest.mark.long
 def test_sliding_with_friction() -> None:
     """All slips: the traction is the coefficient times the pressure, node by node, against the motion, and every check of
     the certificate but coarse meshes' own passes."""

@@ -34,6 +34,7 @@ def test_a_wheel_rolls(cells: int, friction: float) -> None:
     assert [check.name for check in solution.certificate if not check.passed and check.name != "resolution"] == []
 
 
+@pytest.mark.long
 def test_a_wheel_without_friction_turns_where_it_is() -> None:
     """Nothing holds it along the slab but the spring that rigid motions get, which takes what facets push it."""
     solution = abut.solve(wheel(16, 0.0))

@@ -72,6 +72,7 @@ def test_the_bound_itself() -> None:
     assert not bench.bounded([5, 10])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("cells", [12, 17, 24, 40])
 def test_loose_pin(cells: int) -> None:
     """Nothing touches at the outset, and contact alone holds two of three bodies."""
@@ -80,6 +81,7 @@ def test_loose_pin(cells: int) -> None:
             assert max(counts(pin(cells, force, clearance))) <= MOST
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", ["beam", "ball", "pin"])
 def test_multigrid(kind: str) -> None:
     """Where linear systems are solved roughly: some more, and the same answer."""
@@ -262,6 +264,7 @@ MODELS: dict[str, Callable[[], abut.Model]] = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("path", ["condensed", "sparse"])
 @pytest.mark.parametrize("name", MODELS)
 def test_same_answer_as_peeling(name: str, path: str, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -279,6 +282,7 @@ def test_same_answer_as_peeling(name: str, path: str, monkeypatch: pytest.Monkey
     assert np.abs(found.multipliers - expected.multipliers).max() < tolerance * largest
 
 
+@pytest.mark.long
 def test_easy_models_never_search(monkeypatch: pytest.MonkeyPatch) -> None:
     """A set that settles soon, by foresight, is left to do so."""
     monkeypatch.setattr(active_set, "search", lambda *_: pytest.fail("searched"))
@@ -310,6 +314,7 @@ def test_foreseen_wrongly() -> None:
     assert (ready.ended(found).closed == expected.closed).all()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("path", bench.PATHS)
 @pytest.mark.parametrize("swap", [False, True])
 def test_units_do_not_matter(swap: bool, path: str) -> None:

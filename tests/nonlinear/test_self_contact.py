@@ -27,6 +27,7 @@ def pressed() -> Solution:
     return abut.solve(accordion(PUSHED, sides=SIDES))
 
 
+@pytest.mark.long
 def test_folds_touch(pressed: Solution) -> None:
     """Both valleys close: forces add up to none, no multiplier is left open where its surface overlaps, and at points the
     surfaces overlap by what the corners of the bends press in between nodes, a twentieth of the thickness."""
@@ -56,6 +57,7 @@ def test_either_fold_may_be_the_contactor(pressed: Solution) -> None:
     assert np.abs(apart).max() < 0.25 * np.median(facet_sizes(pressed.contacts[0].contactor))
 
 
+@pytest.mark.long
 def test_friction_between_folds() -> None:
     """What slips carries the coefficient times the pressure; forces of both sides are told apart at common nodes."""
     solution = abut.solve(accordion(PUSHED, sides=SIDES, friction=0.3))

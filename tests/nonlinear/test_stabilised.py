@@ -50,6 +50,7 @@ def test_an_arch_snaps_through(pushed: tuple[Solution, list[Saved]]) -> None:
     assert moved.steps[-1].energy.elastic == pytest.approx(solution.steps[-1].energy.elastic, rel=AGREES)  # type: ignore[union-attr]
 
 
+@pytest.mark.long
 def test_energy_that_a_jump_sets_free(pushed: tuple[Solution, list[Saved]]) -> None:
     """The work of a dead force is the force by its way. What of it is not stored the drag has taken, and it is said."""
     solution, _ = pushed

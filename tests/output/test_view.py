@@ -154,6 +154,7 @@ def test_a_picture_has_a_picture_in_it(what: str, tmp_path: Path) -> None:
         solved("tri3").plot("pressur")
 
 
+@pytest.mark.long
 def test_friction_in_pictures(tmp_path: Path) -> None:
     """Traction and slip are there with friction, and refused where no contact has any."""
     pytest.importorskip("pyvista")

@@ -91,6 +91,7 @@ def test_two_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     assert far > 1.3 * near  # up to 1.96 along the outline, of which 16 make a circle
 
 
+@pytest.mark.long
 @needs_gmsh
 def test_names_faces_and_sizes(tmp_path: Path) -> None:
     """Names of the STEP file, ends of bodies, touching faces; curved cells have the volumes of the solids."""

@@ -129,6 +129,7 @@ def test_points_that_follow_in_some_displacements():
     assert np.abs(step.displacement - other.displacement).max() < EXACT * np.abs(step.displacement).max()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", ["kinematic", "distributing"])
 @pytest.mark.parametrize("turns", [1.0, 4.0])
 def test_a_moment_bends_a_beam_into_an_arc(kind, turns):
@@ -180,6 +181,7 @@ def test_kinematic_and_rigid_are_one(loads):
     assert one.rigid["tip"].rotation == pytest.approx(two.rigid["tip"].rotation, rel=1e-6, abs=1e-9)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kinematics", ["small", "finite"])
 @pytest.mark.parametrize("kind", ["kinematic", "distributing"])
 def test_a_flange_pressed_and_bent(kind, kinematics):

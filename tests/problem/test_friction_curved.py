@@ -34,6 +34,7 @@ def far(x: Array, one: Array, y: Array, other: Array) -> float:
     return float(np.linalg.norm(a - b) / np.linalg.norm(a))
 
 
+@pytest.mark.long
 def test_swapped_sides() -> None:
     """The same meshes: what differs is the side that carries the tractions. Facets of a tenth of the contact."""
     model = cylinders("quad4", False, 8, PUSHES)
@@ -54,6 +55,7 @@ def test_pressing_alone_drags_nothing() -> None:
         assert np.abs(drag + drag[::-1]).max() < 1e-6 * contact.max_pressure
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("angle", [0.3, 2.0])
 def test_in_any_frame(angle: float) -> None:
     model = cylinders("quad4", True, CELLS, PUSHES)
@@ -67,6 +69,7 @@ def test_in_any_frame(angle: float) -> None:
     assert np.abs(v - u @ turn.T).max() < 1e-8 * np.abs(u).max()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("unit", [1e-3, 1e3, 1.0 / 25.4], ids=["m", "um", "inch"])
 def test_in_any_unit(unit: float) -> None:
     model = cylinders("quad4", True, CELLS, PUSHES)

@@ -56,6 +56,7 @@ def drag(solution: abut.Solution) -> tuple[float, float]:
     return float(force[0]), float(-force[-1])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("cells", [(8, 6), (24, 4)])
 @pytest.mark.parametrize("held", ["x", "xy"])
 @pytest.mark.parametrize("kinematics", ["small", "finite"])
@@ -87,6 +88,7 @@ def test_reversal() -> None:
     assert along == pytest.approx(-MU * across, rel=1e-9)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kinematics", ["small", "finite"])
 def test_both_sides_held(kinematics: str) -> None:
     """Where supports move both sides past each other nothing is unknown, but the tractions are there, on the supports;
@@ -102,6 +104,7 @@ def test_both_sides_held(kinematics: str) -> None:
     assert rub.force_by_area == 0.0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("friction", [0.0, MU])
 @pytest.mark.parametrize("kinematics", ["small", "finite"])
 def test_contactor_held_in_part(friction: float, kinematics: str) -> None:

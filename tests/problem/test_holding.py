@@ -63,6 +63,7 @@ def fails_with(model: abut.Model, message: str) -> None:
     assert message in str(error.value)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("unit", UNITS)
 @pytest.mark.parametrize("space", SPACES)
 @pytest.mark.parametrize("gap", [0.0, 0.01])
@@ -176,6 +177,7 @@ def test_pulled_off_in_a_later_step() -> None:
     fails_with(replace(model, solve=abut.SolveOptions(steps=1)), "body 'block' is free to translate along y")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("unit", UNITS)
 @pytest.mark.parametrize("space", ["strain", "3D"])
 @pytest.mark.parametrize("load", ["displacement", "force"])

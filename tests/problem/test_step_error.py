@@ -42,6 +42,7 @@ def test_only_points_that_touch_and_stick_count() -> None:
     assert share(small, ()) == 0.0
 
 
+@pytest.mark.long
 def test_more_steps_leave_less_open_and_the_certificate_says_so() -> None:
     """A round block that is pressed down: in one step all of it touches and sticks, in 16 a node at a time. The line is
     of all steps together."""

@@ -117,6 +117,7 @@ def test_no_shell(tmp_path: Path) -> None:
         abut.mid_surface(solution, "strip", 3)
 
 
+@pytest.mark.long
 def test_round_plate(tmp_path: Path) -> None:
     """Clamped all round, under a pressure p: in the middle m = p R^2 (1 + nu) / 16 both ways, shear p r / 2 along the radius
     whatever the directions of the mesh."""
