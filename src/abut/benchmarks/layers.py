@@ -14,7 +14,9 @@ from abut.solution import Solution
 
 ROUND = 400.0  # radius over the half width of contact
 BEYOND = 10.0  # thicknesses of layer outside the contact
-SOURCE = "integral equation of contact on a bonded incompressible layer, solved in tests/benchmarks/test_bonded_layers.py"
+SOURCE = (
+    "integral equation of contact on a bonded incompressible layer, solved in tests/benchmarks/test_bonded_layers.py"
+)
 WITHIN = {"tri6": 0.03, "quad9": 0.01}
 REASON = "3 cells through the thickness; the integral equation itself is solved to 1e-3"
 
