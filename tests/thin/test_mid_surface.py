@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 import abut
 from abut.errors import InputError
+from abut.output.results import is_written
 from models.gmsh_files import write_msh
 from models.thin import CLAMPED, INERTIA, LENGTH, THICK, WIDTH, E, solved, strip
 
@@ -107,6 +108,15 @@ def test_files(tmp_path: Path) -> None:
     assert {data.GetArrayName(i) for i in range(data.GetNumberOfArrays())} >= {"rotation", "moment", "shear_force"}
     abut.write(pulled(tmp_path, (0.1, 0.0, 0.0)), tmp_path / "out", output=abut.Output(fields=["contact"]))
     assert not list((tmp_path / "out").glob("shells*"))
+
+
+def test_a_step_whose_file_is_gone_is_not_written(tmp_path: Path) -> None:
+    """A resumed run writes its files again."""
+    solution = pulled(tmp_path, (0.1, 0.0, 0.0))
+    out = abut.write(solution, tmp_path / "out")
+    assert is_written(out, solution, solution.steps[0])
+    (out / "shells_0001.vtu").unlink()
+    assert not is_written(out, solution, solution.steps[0])
 
 
 def test_no_shell(tmp_path: Path) -> None:

@@ -225,11 +225,12 @@ def status(solution: Solution) -> str:
     return "converged" if solution.complete else "incomplete"
 
 
-def is_written(folder: Path, step: Step, output: Output = EVERYTHING) -> bool:
+def is_written(folder: Path, solution: Solution, step: Step, output: Output = EVERYTHING) -> bool:
     """Whether all files of a step are there that ``output`` names."""
-    contacts = _contact_files(step) if output.contacts else []
+    names = _contact_files(step) if output.contacts else []
+    names += [_shell_file(step)] if output.bodies and solution.model.mesh.shells else []
     whole = is_whole(folder, step.number) or not output.bodies
-    return whole and all((folder / name).is_file() for name in contacts)
+    return whole and all((folder / name).is_file() for name in names)
 
 
 def _files(solution: Solution, shown: Sequence[Step], output: Output) -> list[str]:

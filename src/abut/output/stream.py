@@ -121,7 +121,7 @@ class Stream:
             step
             for step in solution.steps
             if step.number not in self._whole
-            and not (step.number <= len(self.resumed) and is_written(self.directory, step, self._output))
+            and not (step.number <= len(self.resumed) and is_written(self.directory, solution, step, self._output))
         ]
 
     def __enter__(self) -> Stream:
