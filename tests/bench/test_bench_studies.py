@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -58,16 +59,20 @@ def test_a_little_finer_tetrahedra_are_told() -> None:
 
 
 @pytest.mark.long
-def test_much_softer_tetrahedra_are_told() -> None:
-    """Under a stiff quarter ball the middle, where two planes of symmetry meet, is off by more than the study allows (9 %),
-    with facets alike too; with the tetrahedra as contactor it is not, and there is no such line."""
+def test_much_softer_tetrahedra() -> None:
+    """Under a stiff quarter ball, facets alike: either side has the pressure within half of what the study allows (9 %),
+    and no line fails. With friction, where the forces that straight tetrahedra leave are not taken off (Z12), the middle,
+    where two planes of symmetry meet, is off by more, and that is told; .01 of friction itself changes pressures by less."""
     case = problems.ball(("tet4", "hex8"), 1e-3, (8, 8))
-    wrong, right = (abut.solve(case.forced(side)) for side in (1, 0))
-    assert case.error(wrong) > 0.09 > 2.0 * case.error(right)
-    ways = [way for check, way in cures(wrong) if check.name == "sides"]
-    assert len(ways) == 1
-    assert "swap" in ways[0]
-    assert "sides" not in {check.name for check in right.certificate}
+    for side in (1, 0):
+        solution = abut.solve(case.forced(side))
+        assert case.error(solution) < 0.045
+        assert all(check.passed for check in solution.certificate if check.name == "sides")
+    model = case.forced(1)
+    rough = abut.solve(replace(model, contacts=[replace(contact, friction=0.01) for contact in model.contacts]))
+    assert case.error(rough) > 0.09
+    (way,) = (way for check, way in cures(rough) if check.name == "sides")
+    assert "swap" in way
 
 
 @pytest.mark.long
