@@ -64,7 +64,7 @@ def stack(first: str, second: str) -> abut.Model:
 def test_each_contact_and_probe_keeps_its_files(names: tuple[str, str], tmp_path: Path) -> None:
     solution = abut.solve(stack(*names))
     abut.write(solution, tmp_path)
-    assert is_written(tmp_path, solution.steps[0])
+    assert is_written(tmp_path, solution, solution.steps[0])
     step = json.loads((tmp_path / "summary.json").read_text())["steps"][0]
     for contact, probe, name, pressure in zip(step["contacts"], step["probes"], names, (3.0, 1.0)):
         assert contact["name"] == probe["name"] == name

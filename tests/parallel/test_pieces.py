@@ -146,10 +146,10 @@ def test_nothing_of_another_number_of_processes_stays(plane: Solution, tmp_path:
         expected = ["fields_0001.vtu"] if size == 1 else ["fields_0001.pvtu", *pieces]
         assert sorted({*names(tmp_path)} - {other.name}) == expected
         assert f'file="{expected[0]}"' in (tmp_path / "fields.pvd").read_text()
-        assert is_written(tmp_path, step)
+        assert is_written(tmp_path, plane, step)
     assert not other.exists()
     (tmp_path / "fields_0001_0002.vtu").unlink()
-    assert not is_written(tmp_path, step)
+    assert not is_written(tmp_path, plane, step)
 
 
 def test_the_list_is_never_there_before_its_pieces(
