@@ -184,7 +184,8 @@ def test_a_knife_narrower_than_facets_is_told(tmp_path: Path, cells: int) -> Non
     bar = np.array([(x, y, z) for x in (89.0, 91.0) for y in (-1.0, 11.0) for z in (1.0, 6.0)])
     brick = len(points) + np.array([[0, 4, 6, 2, 1, 5, 7, 3]])
     groups = {
-        "strip": {"quad4": strip}, "root": {"line2": [[0, 1], [1, 2]]}, "bar": {"hex8": brick}, "low": {"quad4": brick[:, 3::-1]},
+        "strip": {"quad4": strip}, "root": {"line2": [[0, 1], [1, 2]]}, "bar": {"hex8": brick},
+        "low": {"quad4": brick[:, 3::-1]},
     }  # fmt: skip
     path = write_msh(tmp_path / "a.msh", np.vstack([points, bar]), groups)  # type: ignore[arg-type]
     made = abut.thicken(path, {"strip": abut.Shell(2.0)}, [abut.MidSupport("root", **CLAMPED)])

@@ -223,7 +223,7 @@ def _pressure(case: _Case) -> Iterator[Check]:
 
 
 def _resolved(case: _Case, facets: float) -> Check:
-    """Thin parts touch along lines: what they press there with is a force, which many facets would not show as a pressure."""
+    """Thin parts touch along lines: what they press there with is a force, which no facets show as a pressure."""
     meaning = "one over the number of facets from the edge of contact to its middle, at the end"
     if case.around.bends is None:
         return case.check("resolution", facets, RESOLUTION, meaning, last=True)
