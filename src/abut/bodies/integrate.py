@@ -11,7 +11,7 @@ from abut.bodies.evaluation import History, Part, evaluate
 from abut.bodies.inverted import require_sound
 from abut.bodies.solids import Array, Group, Solids, TemperatureChange
 from abut.bodies.volumes import point_volumes
-from abut.materials.kernel import At, Kernel, Since, Wanted
+from abut.materials.kernel import At, Since, Wanted
 from abut.materials.material import compiled, stored
 from abut.mesh.quadrature import Rule
 
@@ -32,7 +32,7 @@ def integrate(
 
     Raises Inverted, under finite strains, and InputError for materials that return arrays of other shapes."""
     if group.kernel is not None:
-        return _compiled(solids, group, group.kernel, rule, displacement, temperature, history, wanted, since)
+        return _compiled(solids, group, rule, displacement, temperature, history, wanted, since)
     after, done, told = [], 0, 0
     for part, strain, (stress, slope, new) in evaluate(solids, group, rule, displacement, temperature, history):
         rows = slice(done, done := done + len(stress))
@@ -66,7 +66,6 @@ def _stored(solids: Solids, part: Part, rule: Rule, strain: Array, history: Arra
 def _compiled(
     solids: Solids,
     group: Group,
-    kernel: Kernel,
     rule: Rule,
     displacement: Array | None,
     temperature: TemperatureChange,
@@ -74,6 +73,8 @@ def _compiled(
     wanted: Wanted,
     since: Since | None,
 ) -> list[Array]:
+    kernel = group.kernel
+    assert kernel is not None
     cells, thermal = group.arrays(solids, rule), temperature.strain(solids, group)
     constants = {}
     for body, material in solids.materials.items():
