@@ -11,8 +11,7 @@ from abut.linear.static_condensation import CondensedProblem
 from abut.nonlinear.active_set import solve_step
 from abut.nonlinear.attempt import Attempt
 from abut.nonlinear.iteration import Increment
-from abut.nonlinear.load_step import load_step
-from abut.nonlinear.newton import Task
+from abut.nonlinear.load_step import Task, load_step
 from abut.nonlinear.settings import Settings
 from abut.problem.problem import ContactProblem, Problem
 from abut.problem.terms import Motion, Share

@@ -12,9 +12,8 @@ from abut.nonlinear.active_set import solve_step
 from abut.nonlinear.again import Again
 from abut.nonlinear.attempt import Attempt
 from abut.nonlinear.iteration import Increment
-from abut.nonlinear.load_step import load_step
+from abut.nonlinear.load_step import Task, load_step
 from abut.nonlinear.march import Begin, Control
-from abut.nonlinear.newton import Task
 from abut.nonlinear.one_step import UNSTEADY
 from abut.nonlinear.pace import Pace
 from abut.problem.problem import ContactProblem, Problem
