@@ -14,14 +14,23 @@ from abut.errors import SingularModelError, Unsound
 from abut.linear.solver import LinearSolver, Prepared
 from abut.nonlinear.drag import Drag, dragged
 from abut.nonlinear.exchange import exchanged
-from abut.nonlinear.finite_laws import Asked, barely_covered, laws_of, left_open, status_of, wanted_status
+from abut.nonlinear.finite_laws import (
+    Asked,
+    barely_covered,
+    following_status,
+    laws_of,
+    left_open,
+    nearest_kept,
+    status_of,
+    wanted_status,
+    without_pulling,
+)
 from abut.nonlinear.forcing import forcing
 from abut.nonlinear.friction_laws import friction_laws
 from abut.nonlinear.holding import not_adrift, resisting, sticking
 from abut.nonlinear.iteration import Found, Increment, advance, largest_force, largest_pressure, part_of, points
 from abut.nonlinear.line_search import shortened
 from abut.nonlinear.newton import End, Method, newton
-from abut.nonlinear.opening import following_status, nearest_kept, without_pulling
 from abut.nonlinear.settings import NOTHING, Settings
 from abut.nonlinear.smallest import smallest, yielding
 from abut.nonlinear.unsettled import circling, most_at
