@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from abut.analysis.known_stress import mirrored
 from abut.bodies.interpolation import SIMPLEX, interpolation_forces
+from abut.bodies.patch_fits import Fits, Sampling, fitted
 from abut.bodies.recovery import in_cells
 from abut.bodies.stress import PointStress
 from abut.contact.pressure_space import DUAL, DUAL_P1
@@ -39,11 +40,12 @@ Solve = Callable[[Attempt, Imposed], Attempt]
 class Mended:
     """From what pressures and surface stresses of a step are shown. displacement: (n_points, dim), stress: at integration
     points; pressure: of each pair facet-wise coefficients (9 n_facets,), of the force of its multipliers, None where these
-    stay."""
+    stay; fits: to the stresses of the step as it was solved, of which no equation takes part."""
 
     displacement: NDArray[np.float64]
     stress: PointStress
     pressure: tuple[NDArray[np.float64] | None, ...]
+    fits: Fits
 
 
 def is_mended(problem: ContactProblem) -> bool:
@@ -70,18 +72,20 @@ def mended(assembled: Assembled, attempt: Attempt, solve: Solve) -> Mended | Non
     problem, first = assembled.problem, attempt
     model, solids = problem.model, problem.model.deformable
     known = mirrored(model, solids.points, attempt.time, problem.pairs)
-    for _ in range(ROUNDS[model.dim]):
-        motion, stress = _stresses(assembled, attempt.state)
-        cells = in_cells(solids, solids.points, stress, known)
-        force = interpolation_forces(solids, cells, heated(model, assembled.loaded, motion)).ravel()
+    motion, stress = _stresses(assembled, attempt.state)
+    fits = own = fitted(Sampling.of(solids, solids.points, known), stress, known)
+    for number in range(ROUNDS[model.dim]):
+        if number:
+            fits = fitted(own.sampling, stress, known)
+        force = interpolation_forces(solids, in_cells(fits), heated(model, assembled.loaded, motion)).ravel()
         if np.abs(force).max(initial=0.0) <= NOTHING * max(first.state.largest.force, 1e-300):
             break
         attempt = solve(first, Imposed(force))
         if not attempt.converged:
             return None
-    motion, stress = _stresses(assembled, attempt.state)
+        motion, stress = _stresses(assembled, attempt.state)
     pressures = tuple(map(_of_resultant, _pressures(problem, attempt), _pressures(problem, first)))
-    return Mended(motion.displacement.reshape(-1, model.dim), stress, pressures)
+    return Mended(motion.displacement.reshape(-1, model.dim), stress, pressures, own)
 
 
 def _stresses(assembled: Assembled, state: State) -> tuple[Motion, PointStress]:
