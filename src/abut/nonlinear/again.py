@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any, cast
 
 import numpy as np
 
@@ -10,7 +12,8 @@ from abut.linear.solver import LinearSolver, Prepared
 from abut.linear.static_condensation import CondensedProblem
 from abut.nonlinear.active_set import solve_step
 from abut.nonlinear.attempt import Attempt
-from abut.nonlinear.iteration import Increment
+from abut.nonlinear.exact import Aim
+from abut.nonlinear.iteration import Found, Increment
 from abut.nonlinear.load_step import load_step
 from abut.nonlinear.newton import Task
 from abut.nonlinear.settings import Settings
@@ -18,6 +21,8 @@ from abut.problem.problem import ContactProblem, Problem
 from abut.problem.terms import Motion, Share
 from abut.solution import Iteration
 from abut.solution.state import State
+
+ENOUGH = 1e-4  # of the largest force and pressure, left by iterative solvers: the forces change these by some percent
 
 
 @dataclass(frozen=True)
@@ -48,7 +53,7 @@ class Again:
         SingularModelError and NotConverged."""
         increment = Increment(attempt.number, attempt.state.largest, self.settings)
         task = Task(
-            _with(self.problem, imposed), attempt.state, self.solver, increment, self.limit, _unseen, solve_step
+            _with(self.problem, imposed), attempt.state, self.solver, increment, self.limit, _unseen, _roughly
         )
         return load_step(task, attempt.time, self.prepared)
 
@@ -66,6 +71,16 @@ def _with(problem: Problem, imposed: Imposed) -> Problem:
         return replace(problem, whole=replace(problem.whole, terms=(*problem.whole.terms, imposed)))
     assert isinstance(problem, ContactProblem)
     return replace(problem, terms=(*problem.terms, imposed))
+
+
+def _roughly(
+    solver: Prepared, begin: State, increment: Increment, limit: int, observe: Callable[[Iteration], None],
+    earlier: Sequence[Iteration] = (), aim: Aim = "solution", settle: bool = False,
+) -> Found:  # fmt: skip
+    """``solve_step``, where the solver is not exact only to ``ENOUGH``."""
+    if not solver.exact:
+        solver = replace(cast(Any, solver), accurate=max(ENOUGH, solver.accurate))
+    return solve_step(solver, begin, increment, limit, observe, earlier, aim, settle)
 
 
 def _unseen(_: Iteration) -> None:
