@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 from typing import Any, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
-from abut.linear.solver import LinearSolver, Prepared
+from abut.linear.solver import LinearSolver, Prepared, Vector
 from abut.linear.static_condensation import CondensedProblem
 from abut.nonlinear.active_set import solve_step
 from abut.nonlinear.attempt import Attempt
@@ -68,7 +69,8 @@ def prepared(problem: ContactProblem, solver: LinearSolver, state: State, settin
 
 def _with(problem: Problem, imposed: Imposed) -> Problem:
     if isinstance(problem, CondensedProblem):
-        return replace(problem, whole=replace(problem.whole, terms=(*problem.whole.terms, imposed)))
+        whole = replace(problem.whole, terms=(*problem.whole.terms, imposed))
+        return replace(problem, whole=whole, refinements=0)  # cancellation takes no digit that the forces have
     assert isinstance(problem, ContactProblem)
     return replace(problem, terms=(*problem.terms, imposed))
 
@@ -78,9 +80,15 @@ def _roughly(
     earlier: Sequence[Iteration] = (), aim: Aim = "solution", settle: bool = False,
 ) -> Found:  # fmt: skip
     """``solve_step``, where the solver is not exact only to ``ENOUGH``."""
+    solver = replace(cast(Any, solver), predict=_as_asked)
     if not solver.exact:
         solver = replace(cast(Any, solver), accurate=max(ENOUGH, solver.accurate))
     return solve_step(solver, begin, increment, limit, observe, earlier, aim, settle)
+
+
+def _as_asked(gap: Vector, pressure: Vector, active: NDArray[np.bool_], tied: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """The status that the law asks for: so near the solution there is nothing to foresee."""
+    return active
 
 
 def _unseen(_: Iteration) -> None:
