@@ -10,13 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.analysis.known_stress import mirrored
-from abut.bodies.interpolation import SIMPLEX, interpolation_forces
+from abut.bodies.interpolation import interpolation_forces
 from abut.bodies.patch_fits import Fits, Sampling, fitted
 from abut.bodies.recovery import in_cells
 from abut.bodies.stress import PointStress
 from abut.contact.pressure_space import DUAL, DUAL_P1
-from abut.mesh.mesh import Mesh
-from abut.mesh.surface import Surface
 from abut.nonlinear.again import Imposed
 from abut.nonlinear.attempt import Attempt
 from abut.problem.assembly import Assembled
@@ -24,12 +22,10 @@ from abut.problem.balance import Balance
 from abut.problem.body_terms import heated
 from abut.problem.pair import Pair
 from abut.problem.problem import ContactProblem
+from abut.problem.straight_cells import rounds
 from abut.problem.terms import Motion
 from abut.solution.state import State
 
-# By dimension. The second with the stresses that the first has found: it brings von Mises under a ball of triangles from 6.9
-# to 3.6 %, of tetrahedra from 5.5 to 6.0 (bench/stress/table.py), for which it is too dear. A third changes .5 %.
-ROUNDS = {2: 2, 3: 1}
 SHARED = (DUAL, DUAL_P1)  # spaces: values of second order would sharpen what P1 oscillates by
 NOTHING = 1e-10  # of the largest nodal force: stresses are constant or linear, and so exact
 
@@ -50,21 +46,7 @@ class Mended:
 
 def is_mended(problem: ContactProblem) -> bool:
     """Whether there is anything: contact of bodies with such cells, linear materials, small displacements, no friction."""
-    model, pairs = problem.model, problem.pairs
-    if problem.kinematics is not None or not problem.constant or any(pair.frictional for pair in pairs):
-        return False
-    if model.physics or model.penetrations or len(problem.springs):
-        return False
-    return any(of_simplices(model.mesh, side).any() for pair in pairs for side in (pair.contactor, pair.target))
-
-
-def of_simplices(mesh: Mesh, side: Surface) -> NDArray[np.bool_]:
-    """(n_facets,) whose cells are triangles or tetrahedra of first order."""
-    result = np.zeros(len(side), dtype=bool)
-    for block, start, end in zip(mesh.blocks, mesh.starts, mesh.starts[1:]):
-        if block.kind in SIMPLEX:
-            result |= (side.cells >= start) & (side.cells < end)
-    return result
+    return problem.constant and not len(problem.springs) and rounds(problem.model, problem.pairs) > 0
 
 
 def mended(assembled: Assembled, attempt: Attempt, solve: Solve) -> Mended | None:
@@ -74,7 +56,7 @@ def mended(assembled: Assembled, attempt: Attempt, solve: Solve) -> Mended | Non
     known = mirrored(model, solids.points, attempt.time, problem.pairs)
     motion, stress = _stresses(assembled, attempt.state)
     fits = own = fitted(Sampling.of(solids, solids.points, known), stress, known)
-    for number in range(ROUNDS[model.dim]):
+    for number in range(rounds(model, problem.pairs)):
         if number:
             fits = fitted(own.sampling, stress, known)
         force = interpolation_forces(solids, in_cells(fits), heated(model, assembled.loaded, motion)).ravel()
