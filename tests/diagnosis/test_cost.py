@@ -13,9 +13,9 @@ from abut.analysis.interpolation_error import is_mended
 from abut.diagnosis.cost import foresee
 from abut.job.load import load_job
 from abut.linear.cost_model import effort, seconds
+from abut.mesh.make import box, join, rectangle
 from abut.problem.constraints import supports
 from abut.problem.contact_pairs import pairs
-from abut.mesh.make import box, join, rectangle
 from models.friction import pushed
 from models.oracle import assembled
 

@@ -53,9 +53,7 @@ class Again:
         """The end of a step (without friction, since it begins with its own end) with these forces. Raises
         SingularModelError and NotConverged."""
         increment = Increment(attempt.number, attempt.state.largest, self.settings)
-        task = Task(
-            _with(self.problem, imposed), attempt.state, self.solver, increment, self.limit, _unseen, _roughly
-        )
+        task = Task(_with(self.problem, imposed), attempt.state, self.solver, increment, self.limit, _unseen, _roughly)
         return load_step(task, attempt.time, self.prepared)
 
 
