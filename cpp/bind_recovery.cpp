@@ -140,6 +140,56 @@ static Table evaluate_patches(Matrix<double> x, Integers patches_of, Integers pa
   return to_numpy(std::move(result), {count, c});
 }
 
+// Of cells with corners alone, at each of these the mean of the polynomials of all of them.
+template <int dim>
+void evaluate_cells(const std::int32_t *corners, std::size_t count, std::size_t k, const double *centre,
+                    const double *coefficients, const double *metrics, double *result) {
+  constexpr int C = PatchFit<dim>::C, T = PatchFit<dim>::T;
+  const std::size_t parts = count * k < FEW_POINTS ? 1 : thread_count();
+  run_parts(parts, [&](std::size_t part) {
+    double xi[dim], p[T];
+    for (std::size_t cell = count * part / parts; cell < count * (part + 1) / parts; ++cell)
+      for (std::size_t j = 0; j < k; ++j) {
+        const double *x = centre + std::size_t(corners[cell * k + j]) * dim;
+        double sum[C] = {0};
+        for (std::size_t i = 0; i < k; ++i) {
+          const std::size_t patch = std::size_t(corners[cell * k + i]);
+          const double *own = coefficients + patch * T * C;
+          if (i == j) { // in the middle there is nothing but the first term
+            for (int c = 0; c < C; ++c)
+              sum[c] += own[c];
+            continue;
+          }
+          PatchFit<dim>::own(metrics + patch * dim * dim, x, centre + patch * dim, xi);
+          PatchFit<dim>::basis(xi, p);
+          for (int t = 0; t < T; ++t)
+            for (int c = 0; c < C; ++c)
+              sum[c] += p[t] * own[t * C + c];
+        }
+        double *to = result + (cell * k + j) * 6;
+        for (int c = 0; c < C; ++c)
+          to[c] = sum[c] / double(k);
+      }
+  });
+}
+
+static Table corner_stresses(Matrix<std::int32_t> corners, Matrix<double> centre, Tensor3<double> coefficients,
+                             Tensor3<double> metrics) {
+  const std::size_t count = corners.shape(0), k = corners.shape(1), dim = centre.shape(1), c = dim == 2 ? 4 : 6;
+  require((dim == 2 || dim == 3) && coefficients.shape(0) == centre.shape(0) && coefficients.shape(2) == c &&
+          coefficients.shape(1) == (dim + 1) * (dim + 2) / 2 && metrics.shape(0) == centre.shape(0) &&
+          metrics.shape(1) == dim && metrics.shape(2) == dim);
+  for (std::size_t i = 0; i < count * k; ++i)
+    require(corners.data()[i] >= 0 && std::size_t(corners.data()[i]) < centre.shape(0));
+  std::vector<double> result(count * k * 6);
+  const auto evaluate = dim == 2 ? evaluate_cells<2> : evaluate_cells<3>;
+  {
+    nb::gil_scoped_release release;
+    evaluate(corners.data(), count, k, centre.data(), coefficients.data(), metrics.data(), result.data());
+  }
+  return to_numpy(std::move(result), {count, k, 6});
+}
+
 // Of a stress s (6): s S s with the compliance S (6, 6) of stresses whose shear strains are doubled.
 static double energy(const double *s, const double *compliance) {
   double sum = 0;
@@ -202,6 +252,11 @@ void bind_recovery(nb::module_ &m) {
         nb::arg("patches").noconvert(), nb::arg("weights").noconvert(), nb::arg("centre").noconvert(),
         nb::arg("coefficients").noconvert(), nb::arg("metrics").noconvert(),
         "Values (n, 4 or 6) at positions x (n, dim): sums of the weights of some patches times their polynomials.");
+  m.def(
+      "corner_stresses", &corner_stresses, nb::arg("corners").noconvert(), nb::arg("centre").noconvert(),
+      nb::arg("coefficients").noconvert(), nb::arg("metrics").noconvert(),
+      "Of cells whose corners are the middles of patches, corners (n, k), the mean of the polynomials of these at each "
+      "of them, (n, k, 6).");
   m.def(
       "stress_errors", &stress_errors, nb::arg("points").noconvert(), nb::arg("nodes").noconvert(), nb::arg("rule"),
       nb::arg("axisymmetric"), nb::arg("stress").noconvert(), nb::arg("recovered"), nb::arg("compliance"),

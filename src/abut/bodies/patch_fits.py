@@ -8,7 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut._core import evaluate_patches, fit_patches, shape_functions
+from abut._core import corner_stresses, evaluate_patches, fit_patches, shape_functions
 from abut.bodies.image_cells import ImageCells, image_cells, planes_of
 from abut.bodies.solids import Array, Solids
 from abut.bodies.stress import PointStress
@@ -150,6 +150,10 @@ class Fits:
         result = np.zeros((len(x), 6))
         result[:, used(x.shape[1])] = found
         return result
+
+    def at_corners(self, patches: NDArray[np.int32]) -> Array:
+        """Of cells with corners alone, patches (n, k) round them, the mean of their polynomials at each corner, (n, k, 6)."""
+        return np.asarray(corner_stresses(patches, self.sampling.centre, self.coefficients, self.metrics))
 
 
 def fitted(sampling: Sampling, stress: PointStress, known: Equations, plain: Fits | None = None) -> Fits:

@@ -40,27 +40,22 @@ def recovered(
 def in_cells(fits: Fits) -> list[Array | None]:
     """Of each block of the mesh the mean of the polynomials of its cells' corners at the cells' nodes, (n, n_nodes, 6); None
     for cells with other nodes than corners, or without a material."""
-    solids, points = fits.sampling.solids, fits.sampling.points
-    of, dim = solids.patches, points.shape[1]
-    patch = np.full(len(of.point), -1, dtype=np.int64)
+    solids = fits.sampling.solids
+    of = solids.patches
+    patch = np.full(len(of.point), -1, dtype=np.int32)
     patch[of.corner] = np.arange(len(of.corner))
     result: list[Array | None] = []
     for block, nodes in zip(solids.mesh.blocks, of.nodes):
         if CELLS[block.kind].degree > 1 or not len(nodes) or (nodes < 0).all():
             result.append(None)
             continue
-        deforms = (nodes >= 0).all(axis=1)
-        some = nodes[deforms]
-        n, k = some.shape
-        found = fits.at(
-            points[of.point[some]].reshape(n * k, dim), np.arange(0, n * k * k + 1, k),
-            np.repeat(patch[some], k, axis=0).ravel(), np.full(n * k * k, 1.0 / k),
-        ).reshape(n, k, 6)  # fmt: skip
-        if not deforms.all():
-            values = np.zeros((*nodes.shape, 6))
-            values[deforms] = found
-            found = values
-        result.append(found)
+        deforms = nodes[:, 0] >= 0
+        if deforms.all():
+            result.append(fits.at_corners(patch[nodes]))
+            continue
+        values = np.zeros((*nodes.shape, 6))
+        values[deforms] = fits.at_corners(patch[nodes[deforms]])
+        result.append(values)
     return result
 
 
