@@ -138,21 +138,20 @@ class Fits:
     metrics: Array
     alone: bool
 
-    def at(self, x: Array, first: NDArray[np.int64], patches: NDArray[np.int64], weights: Array) -> Array:
-        """Stresses xx yy zz xy yz zx at positions x (n, dim): the sum of some patches' polynomials, those of i from first[i]
-        to first[i + 1], times weights; (n, 6)."""
+    def at(self, x: Array, shares: Sparse) -> Array:
+        """Stresses xx yy zz xy yz zx (n, 6) at positions x (n, dim): patches' polynomials times ``shares`` (n, n_patches),
+        CSR."""
         found = evaluate_patches(
-            np.ascontiguousarray(x), first.astype(np.int64), patches.astype(np.int64), weights, self.sampling.centre,
-            self.coefficients, self.metrics,
-        )  # fmt: skip
+            np.ascontiguousarray(x), *_lists(shares), shares.data, self.sampling.centre, self.coefficients, self.metrics
+        )
         if found.shape[1] == 6:
-            return found
+            return np.asarray(found)
         result = np.zeros((len(x), 6))
         result[:, used(x.shape[1])] = found
         return result
 
     def at_corners(self, patches: NDArray[np.int32]) -> Array:
-        """Of cells with corners alone, patches (n, k) round them, the mean of their polynomials at each corner, (n, k, 6)."""
+        """Of cells with corners alone, patches (n, k) round these, the mean of the polynomials at each, (n, k, 6)."""
         return np.asarray(corner_stresses(patches, self.sampling.centre, self.coefficients, self.metrics))
 
 

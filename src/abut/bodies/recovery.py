@@ -30,7 +30,7 @@ def recovered(
         fits = fitted(plain.sampling, stress, known, plain)
     else:
         fits = fitted(Sampling.of(solids, points, known), stress, known)
-    result = fits.at(points[of.point], of.blend.indptr, of.blend.indices, of.blend.data)
+    result = fits.at(points[of.point], of.blend)
     value = np.zeros(len(points), dtype=np.int64)
     value[of.point] = np.arange(len(of.point))
     result[value[known.node][:, None], used(points.shape[1])] = known.given
