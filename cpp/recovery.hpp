@@ -1,6 +1,8 @@
 // Superconvergent patch recovery: polynomials fitted to the stresses at the sampling points of the cells around a
 // point, and to linear equations of the stress at its surface; theory (Z2), (Z3).
 #pragma once
+#include "mirror.hpp"
+#include "patch_samples.hpp"
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -8,60 +10,6 @@
 #include <vector>
 
 namespace abut {
-
-// A stress xx yy zz xy (yz zx) or the coefficients of an equation for it, mirrored by a plane with a normal n (dim).
-// shear: 1 for stresses, 2 for coefficients, which are doubled there.
-template <int dim> void reflect(const double *n, double shear, double *s) {
-  constexpr int at[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
-  double full[3][3] = {{0}}, mirror[3][3], half[3][3], sum;
-  for (int a = 0; a < 3; ++a)
-    for (int b = 0; b < 3; ++b) {
-      if (dim == 3 || (a < 2 && b < 2) || a == b)
-        full[a][b] = s[at[a][b]] / (a == b ? 1 : shear);
-      mirror[a][b] = (a == b) - (a < dim && b < dim ? 2 * n[a] * n[b] : 0);
-    }
-  for (int a = 0; a < 3; ++a)
-    for (int b = 0; b < 3; ++b) {
-      sum = 0;
-      for (int c = 0; c < 3; ++c)
-        sum += mirror[a][c] * full[c][b];
-      half[a][b] = sum;
-    }
-  for (int a = 0; a < 3; ++a)
-    for (int b = a; b < 3; ++b) {
-      if (dim == 2 && b == 2 && a != b)
-        continue;
-      sum = 0;
-      for (int c = 0; c < 3; ++c)
-        sum += half[a][c] * mirror[c][b];
-      s[at[a][b]] = sum * (a == b ? 1 : shear);
-    }
-}
-
-// Lists of numbers: those of i from first[i] to first[i + 1].
-struct Lists {
-  const std::int64_t *first, *numbers;
-};
-
-// samples: x (any, dim), stress (any, C), of cell c from first[c] to first[c + 1], those of images of cells after those
-// of the n_cells themselves; spread (cells, dim + 1, dim): mean of the cell's corners and their second moments about
-// it. patches: centre (count, dim), the cells and the images that have its corner, degree, whether it takes the cells
-// around the corners of its cells too, planes (count, 3) that mirror it or -1, and the numbers of the planes across
-// each axis through its corner, on (count, dim), and that made an image, by (images, dim), or -1. corners: the patches
-// in the middle of which a cell's corners are. equations: at x (any, dim), sum over the components of coefficients
-// (any, C) times stress = value. heavy: weight of an equation beside that of a sample.
-struct Patches {
-  const double *x, *stress;
-  const std::int64_t *first;
-  const double *spread;
-  std::size_t n_cells, n_images, count;
-  const double *centre;
-  Lists around, images, corners, rows_of;
-  const std::int32_t *degree, *wide, *planes, *on, *by;
-  const double *normals;
-  const double *row_x, *row_coefficients, *row_values;
-  double heavy;
-};
 
 template <int dim> class PatchFit {
 public:
