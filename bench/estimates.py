@@ -56,6 +56,8 @@ def example(name: str) -> abut.Model:
 MODELS: Mapping[str, Callable[[], abut.Model]] = {
     "blocks hex8": lambda: blocks("hex8", 16),
     "blocks hex8 large": lambda: blocks("hex8", 30),
+    "blocks tet4": lambda: blocks("tet4", 16),
+    "blocks tet4 large": lambda: blocks("tet4", 26),
     "blocks hex20": lambda: blocks("hex20", 9),
     "blocks hex20 large": lambda: blocks("hex20", 16),
     "blocks tet10": lambda: blocks("tet10", 8),

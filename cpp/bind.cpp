@@ -9,6 +9,7 @@ NB_MODULE(_core, m) {
   abut::bind_pattern(m);
   abut::bind_integrate(m);
   abut::bind_interface(m);
+  abut::bind_interpolation(m);
   abut::bind_laws(m);
   abut::bind_recovery(m);
   abut::bind_sparse(m);

@@ -74,6 +74,7 @@ void bind_padding(nb::module_ &m);
 void bind_pattern(nb::module_ &m);
 void bind_integrate(nb::module_ &m);
 void bind_interface(nb::module_ &m);
+void bind_interpolation(nb::module_ &m);
 void bind_laws(nb::module_ &m);
 void bind_recovery(nb::module_ &m);
 void bind_sparse(nb::module_ &m);

@@ -13,56 +13,92 @@ using Integers = Vector<std::int64_t>;
 using Numbers = Vector<std::int32_t>;
 using Samples =
     std::tuple<Matrix<double>, Matrix<double>, Integers, Tensor3<double>>; // positions, stresses, first, spread
-using Cover = std::tuple<Matrix<double>, Integers, Integers, Numbers>;     // centres, cells_of, cells, degree
-using Mirrors = std::tuple<Matrix<std::int32_t>, Matrix<double>>;          // planes of each patch, their normals
-using Equations = std::tuple<Integers, Integers, Matrix<double>, Matrix<double>, Vector<double>>;
+using Numbered = std::tuple<Integers, Integers>;                           // first, numbers
+using Cover =
+    std::tuple<Matrix<double>, Numbered, Numbered, Numbers, Numbers>; // centres, around, corners, degree, wide
+using Images = std::tuple<Numbered, Matrix<std::int32_t>, Matrix<std::int32_t>>; // by patch, on, by
+using Mirrors = std::tuple<Matrix<std::int32_t>, Matrix<double>>;                // planes of each patch, their normals
+using Equations = std::tuple<Numbered, Matrix<double>, Matrix<double>, Vector<double>>;
 using Table = nb::ndarray<nb::numpy, double>;
 
-constexpr std::size_t FEW_PATCHES = 500; // not worth a thread
+constexpr std::size_t FEW_PATCHES = 500, FEW_POINTS = 20000; // not worth a thread
 
 static void require(bool agree) {
   if (!agree)
     throw nb::value_error("patches, samples and equations disagree");
 }
 
-template <int dim> void fit_all(const Patches &patches, double *coefficients, double *metrics) {
-  const std::size_t parts = patches.count < FEW_PATCHES ? 1 : thread_count();
+template <int dim> void fit_all(const Patches &patches, Integers only, double *coefficients, double *metrics) {
+  const std::size_t count = only.shape(0), parts = count < FEW_PATCHES ? 1 : thread_count();
   run_parts(parts, [&](std::size_t part) {
     PatchFit<dim> fit(patches);
     constexpr int width = PatchFit<dim>::UNKNOWNS;
-    for (std::size_t k = patches.count * part / parts; k < patches.count * (part + 1) / parts; ++k)
-      fit.fit(k, coefficients + k * width, metrics + k * dim * dim);
+    for (std::size_t i = count * part / parts; i < count * (part + 1) / parts; ++i)
+      fit.fit(std::size_t(only.data()[i]), coefficients + i * width, metrics + i * dim * dim);
   });
 }
 
-static std::tuple<Table, Table> fit_patches(const Samples &samples, const Cover &cover, const Mirrors &mirrors,
-                                            const Equations &equations, double heavy) {
+static Lists lists(const Numbered &of, std::size_t count, std::size_t most) {
+  const auto &[first, numbers] = of;
+  require(first.shape(0) == count + 1 && std::size_t(first.data()[count]) == numbers.shape(0));
+  for (std::size_t i = 0; i < numbers.shape(0); ++i)
+    require(numbers.data()[i] >= 0 && std::size_t(numbers.data()[i]) < most);
+  return {first.data(), numbers.data()};
+}
+
+static std::tuple<Table, Table> fit_patches(const Samples &samples, const Cover &cover, const Images &images,
+                                            const Mirrors &mirrors, const Equations &equations, double heavy,
+                                            Integers only) {
   const auto &[x, stress, first, spread] = samples;
-  const auto &[centre, cells_of, cells, degree] = cover;
+  const auto &[centre, around, corners, degree, wide] = cover;
+  const auto &[image_of, on, by] = images;
   const auto &[planes, normals] = mirrors;
-  const auto &[rows_of, rows, row_x, row_coefficients, row_values] = equations;
-  const std::size_t count = centre.shape(0), dim = x.shape(1), c = dim == 2 ? 4 : 6;
+  const auto &[rows_of, row_x, row_coefficients, row_values] = equations;
+  const std::size_t count = centre.shape(0), dim = x.shape(1), c = dim == 2 ? 4 : 6, n_images = by.shape(0);
   require((dim == 2 || dim == 3) && stress.shape(1) == c && stress.shape(0) == x.shape(0) && centre.shape(1) == dim);
-  require(cells_of.shape(0) == count + 1 && degree.shape(0) == count && planes.shape(0) == count &&
-          planes.shape(1) == 3 && normals.shape(1) == dim && rows_of.shape(0) == count + 1);
+  require(degree.shape(0) == count && wide.shape(0) == count && planes.shape(0) == count && planes.shape(1) == 3 &&
+          normals.shape(1) == dim && on.shape(0) == count && on.shape(1) == dim && by.shape(1) == dim);
   require(row_x.shape(1) == dim && row_coefficients.shape(1) == c && row_x.shape(0) == row_values.shape(0) &&
           row_coefficients.shape(0) == row_values.shape(0));
-  const Patches patches{x.data(),          stress.data(), first.data(),
-                        spread.data(),     count,         centre.data(),
-                        cells_of.data(),   cells.data(),  rows_of.data(),
-                        rows.data(),       degree.data(), planes.data(),
-                        normals.data(),    row_x.data(),  row_coefficients.data(),
-                        row_values.data(), heavy};
+  require(spread.shape(0) >= n_images && first.shape(0) == spread.shape(0) + 1);
+  const std::size_t n_cells = spread.shape(0) - n_images;
+  const Patches patches{x.data(),
+                        stress.data(),
+                        first.data(),
+                        spread.data(),
+                        n_cells,
+                        n_images,
+                        count,
+                        centre.data(),
+                        lists(around, count, n_cells),
+                        lists(image_of, count, n_images),
+                        lists(corners, n_cells, count),
+                        lists(rows_of, count, row_x.shape(0)),
+                        degree.data(),
+                        wide.data(),
+                        planes.data(),
+                        on.data(),
+                        by.data(),
+                        normals.data(),
+                        row_x.data(),
+                        row_coefficients.data(),
+                        row_values.data(),
+                        heavy};
+  for (std::size_t i = 0; i < only.shape(0); ++i) {
+    const std::int64_t k = only.data()[i];
+    require(k >= 0 && std::size_t(k) < count && patches.around.first[k] < patches.around.first[k + 1]);
+  }
   const std::size_t terms = (dim + 1) * (dim + 2) / 2;
-  std::vector<double> coefficients(count * terms * c), metrics(count * dim * dim);
+  std::vector<double> coefficients(only.shape(0) * terms * c), metrics(only.shape(0) * dim * dim);
   {
     nb::gil_scoped_release release;
     if (dim == 2)
-      fit_all<2>(patches, coefficients.data(), metrics.data());
+      fit_all<2>(patches, only, coefficients.data(), metrics.data());
     else
-      fit_all<3>(patches, coefficients.data(), metrics.data());
+      fit_all<3>(patches, only, coefficients.data(), metrics.data());
   }
-  return {to_numpy(std::move(coefficients), {count, terms, c}), to_numpy(std::move(metrics), {count, dim, dim})};
+  return {to_numpy(std::move(coefficients), {only.shape(0), terms, c}),
+          to_numpy(std::move(metrics), {only.shape(0), dim, dim})};
 }
 
 // Each point's value, the weighted sum of the polynomials of some patches there.
@@ -71,16 +107,23 @@ void evaluate_all(const double *x, std::size_t count, const std::int64_t *patche
                   const double *weights, const double *centre, const double *coefficients, const double *metrics,
                   double *result) {
   constexpr int C = PatchFit<dim>::C, T = PatchFit<dim>::T;
-  double xi[dim], p[T];
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::int64_t k = patches_of[i]; k < patches_of[i + 1]; ++k) {
-      const std::int64_t patch = patches[k];
-      PatchFit<dim>::own(metrics + patch * dim * dim, x + i * dim, centre + patch * dim, xi);
-      PatchFit<dim>::basis(xi, p);
-      for (int t = 0; t < T; ++t)
-        for (int c = 0; c < C; ++c)
-          result[i * C + c] += weights[k] * p[t] * coefficients[(patch * T + t) * C + c];
+  const std::size_t parts = count < FEW_POINTS ? 1 : thread_count();
+  run_parts(parts, [&](std::size_t part) {
+    double xi[dim], p[T];
+    for (std::size_t i = count * part / parts; i < count * (part + 1) / parts; ++i) {
+      double sum[C] = {0};
+      for (std::int64_t k = patches_of[i]; k < patches_of[i + 1]; ++k) {
+        const std::int64_t patch = patches[k];
+        PatchFit<dim>::own(metrics + patch * dim * dim, x + i * dim, centre + patch * dim, xi);
+        PatchFit<dim>::basis(xi, p);
+        const double *own = coefficients + patch * T * C;
+        for (int t = 0; t < T; ++t)
+          for (int c = 0; c < C; ++c)
+            sum[c] += weights[k] * p[t] * own[t * C + c];
+      }
+      std::copy(sum, sum + C, result + i * C);
     }
+  });
 }
 
 static Table evaluate_patches(Matrix<double> x, Integers patches_of, Integers patches, Vector<double> weights,
@@ -95,6 +138,56 @@ static Table evaluate_patches(Matrix<double> x, Integers patches_of, Integers pa
   evaluate(x.data(), count, patches_of.data(), patches.data(), weights.data(), centre.data(), coefficients.data(),
            metrics.data(), result.data());
   return to_numpy(std::move(result), {count, c});
+}
+
+// Of cells with corners alone, at each of these the mean of the polynomials of all of them.
+template <int dim>
+void evaluate_cells(const std::int32_t *corners, std::size_t count, std::size_t k, const double *centre,
+                    const double *coefficients, const double *metrics, double *result) {
+  constexpr int C = PatchFit<dim>::C, T = PatchFit<dim>::T;
+  const std::size_t parts = count * k < FEW_POINTS ? 1 : thread_count();
+  run_parts(parts, [&](std::size_t part) {
+    double xi[dim], p[T];
+    for (std::size_t cell = count * part / parts; cell < count * (part + 1) / parts; ++cell)
+      for (std::size_t j = 0; j < k; ++j) {
+        const double *x = centre + std::size_t(corners[cell * k + j]) * dim;
+        double sum[C] = {0};
+        for (std::size_t i = 0; i < k; ++i) {
+          const std::size_t patch = std::size_t(corners[cell * k + i]);
+          const double *own = coefficients + patch * T * C;
+          if (i == j) { // in the middle there is nothing but the first term
+            for (int c = 0; c < C; ++c)
+              sum[c] += own[c];
+            continue;
+          }
+          PatchFit<dim>::own(metrics + patch * dim * dim, x, centre + patch * dim, xi);
+          PatchFit<dim>::basis(xi, p);
+          for (int t = 0; t < T; ++t)
+            for (int c = 0; c < C; ++c)
+              sum[c] += p[t] * own[t * C + c];
+        }
+        double *to = result + (cell * k + j) * 6;
+        for (int c = 0; c < C; ++c)
+          to[c] = sum[c] / double(k);
+      }
+  });
+}
+
+static Table corner_stresses(Matrix<std::int32_t> corners, Matrix<double> centre, Tensor3<double> coefficients,
+                             Tensor3<double> metrics) {
+  const std::size_t count = corners.shape(0), k = corners.shape(1), dim = centre.shape(1), c = dim == 2 ? 4 : 6;
+  require((dim == 2 || dim == 3) && coefficients.shape(0) == centre.shape(0) && coefficients.shape(2) == c &&
+          coefficients.shape(1) == (dim + 1) * (dim + 2) / 2 && metrics.shape(0) == centre.shape(0) &&
+          metrics.shape(1) == dim && metrics.shape(2) == dim);
+  for (std::size_t i = 0; i < count * k; ++i)
+    require(corners.data()[i] >= 0 && std::size_t(corners.data()[i]) < centre.shape(0));
+  std::vector<double> result(count * k * 6);
+  const auto evaluate = dim == 2 ? evaluate_cells<2> : evaluate_cells<3>;
+  {
+    nb::gil_scoped_release release;
+    evaluate(corners.data(), count, k, centre.data(), coefficients.data(), metrics.data(), result.data());
+  }
+  return to_numpy(std::move(result), {count, k, 6});
 }
 
 // Of a stress s (6): s S s with the compliance S (6, 6) of stresses whose shear strains are doubled.
@@ -145,19 +238,25 @@ static Table stress_errors(Matrix<double> points, Matrix<std::int32_t> nodes,
 }
 
 void bind_recovery(nb::module_ &m) {
-  m.def("fit_patches", &fit_patches, nb::arg("samples"), nb::arg("cover"), nb::arg("mirrors"), nb::arg("equations"),
-        nb::arg("heavy"),
+  m.def("fit_patches", &fit_patches, nb::arg("samples"), nb::arg("cover"), nb::arg("images"), nb::arg("mirrors"),
+        nb::arg("equations"), nb::arg("heavy"), nb::arg("only").noconvert(),
         "Polynomials fitted to the samples (positions (m, dim), stresses (m, 4 or 6), first (cells + 1,), mean and "
-        "second moments of corners (cells, dim + 1, dim)) of the cells of "
-        "patches (centres (k, dim), ranges (k + 1,) of cells, cells, degrees (k,)), which planes through the centre "
-        "mirror "
-        "(planes (k, 3), normals (p, dim)), and to equations (ranges (k + 1,), numbers, positions, coefficients, "
-        "values): "
-        "coefficients (k, terms, 4 or 6) in each patch's own coordinates, and their metrics (k, dim, dim).");
+        "second moments of corners (cells, dim + 1, dim)) of the cells, images after them, of patches: cover: (centres "
+        "(k, dim), cells that have the corner, patches of a cell's corners, both as (ranges, numbers), degrees (k,), "
+        "whether cells around corners of cells count too (k,)); images: ((ranges, numbers) by patch, planes across "
+        "each axis through the corner (k, dim), that made an image (images, dim)); planes through the centre mirror "
+        "patches (planes (k, 3), normals (p, dim)); equations ((ranges, numbers) by patch, positions, coefficients, "
+        "values). only: (r,) patches that are fitted. Coefficients (r, terms, 4 or 6) in each patch's own coordinates, "
+        "and their metrics (r, dim, dim).");
   m.def("evaluate_patches", &evaluate_patches, nb::arg("x").noconvert(), nb::arg("patches_of").noconvert(),
         nb::arg("patches").noconvert(), nb::arg("weights").noconvert(), nb::arg("centre").noconvert(),
         nb::arg("coefficients").noconvert(), nb::arg("metrics").noconvert(),
         "Values (n, 4 or 6) at positions x (n, dim): sums of the weights of some patches times their polynomials.");
+  m.def(
+      "corner_stresses", &corner_stresses, nb::arg("corners").noconvert(), nb::arg("centre").noconvert(),
+      nb::arg("coefficients").noconvert(), nb::arg("metrics").noconvert(),
+      "Of cells whose corners are the middles of patches, corners (n, k), the mean of the polynomials of these at each "
+      "of them, (n, k, 6).");
   m.def(
       "stress_errors", &stress_errors, nb::arg("points").noconvert(), nb::arg("nodes").noconvert(), nb::arg("rule"),
       nb::arg("axisymmetric"), nb::arg("stress").noconvert(), nb::arg("recovered"), nb::arg("compliance"),

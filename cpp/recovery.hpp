@@ -1,6 +1,8 @@
 // Superconvergent patch recovery: polynomials fitted to the stresses at the sampling points of the cells around a
 // point, and to linear equations of the stress at its surface; theory (Z2), (Z3).
 #pragma once
+#include "mirror.hpp"
+#include "patch_samples.hpp"
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -8,52 +10,6 @@
 #include <vector>
 
 namespace abut {
-
-// A stress xx yy zz xy (yz zx) or the coefficients of an equation for it, mirrored by a plane with a normal n (dim).
-// shear: 1 for stresses, 2 for coefficients, which are doubled there.
-template <int dim> void reflect(const double *n, double shear, double *s) {
-  constexpr int at[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
-  double full[3][3] = {{0}}, mirror[3][3], half[3][3], sum;
-  for (int a = 0; a < 3; ++a)
-    for (int b = 0; b < 3; ++b) {
-      if (dim == 3 || (a < 2 && b < 2) || a == b)
-        full[a][b] = s[at[a][b]] / (a == b ? 1 : shear);
-      mirror[a][b] = (a == b) - (a < dim && b < dim ? 2 * n[a] * n[b] : 0);
-    }
-  for (int a = 0; a < 3; ++a)
-    for (int b = 0; b < 3; ++b) {
-      sum = 0;
-      for (int c = 0; c < 3; ++c)
-        sum += mirror[a][c] * full[c][b];
-      half[a][b] = sum;
-    }
-  for (int a = 0; a < 3; ++a)
-    for (int b = a; b < 3; ++b) {
-      if (dim == 2 && b == 2 && a != b)
-        continue;
-      sum = 0;
-      for (int c = 0; c < 3; ++c)
-        sum += half[a][c] * mirror[c][b];
-      s[at[a][b]] = sum * (a == b ? 1 : shear);
-    }
-}
-
-// samples: x (any, dim), stress (any, C), of cell c from first[c] to first[c + 1]; spread (cells, dim + 1, dim): mean
-// of the cell's corners and their second moments about it. patches: centre (count, dim), cells and equations as ranges
-// of lists, degree, planes (count, 3) that mirror it or -1. equations: at x (any, dim), sum over the components of
-// coefficients (any, C) times stress = value. heavy: weight of an equation beside that of a sample.
-struct Patches {
-  const double *x, *stress;
-  const std::int64_t *first;
-  const double *spread;
-  std::size_t count;
-  const double *centre;
-  const std::int64_t *cells_of, *cells, *rows_of, *rows;
-  const std::int32_t *degree, *planes;
-  const double *normals;
-  const double *row_x, *row_coefficients, *row_values;
-  double heavy;
-};
 
 template <int dim> class PatchFit {
 public:
@@ -63,7 +19,8 @@ public:
   static constexpr double RIDGE = 1e-4, FLAT = 1e-2;
 
   explicit PatchFit(const Patches &patches)
-      : in(patches), single(T * T), rhs(T * C), coupled(UNKNOWNS * UNKNOWNS), coupled_rhs(UNKNOWNS) {}
+      : in(patches), single(T * T), rhs(T * C), coupled(UNKNOWNS * UNKNOWNS), coupled_rhs(UNKNOWNS),
+        seen(patches.n_cells + patches.n_images, NONE), visited(patches.count, NONE) {}
 
   static int terms(int degree) { return degree == 2 ? T : degree == 1 ? 1 + dim : 1; }
 
@@ -91,17 +48,23 @@ public:
 
   // Coefficients (T, C) in the patch's own coordinates, and their metric (dim, dim).
   void fit(std::size_t k, double *coefficients, double *metric) {
+    find_cells(k);
     find_images(k);
     find_metric(k, metric);
     n = terms(in.degree[k]);
     std::fill(single.begin(), single.end(), 0.0);
     std::fill(rhs.begin(), rhs.end(), 0.0);
     std::fill(coefficients, coefficients + T * C, 0.0);
-    const std::int64_t any = in.first[in.cells[in.cells_of[k]]];
+    const std::int64_t any = in.first[cells.front()];
     std::copy(in.stress + any * C, in.stress + (any + 1) * C, level); // rounding is then that of differences
-    add_samples(k, metric);
+    if (n == T)
+      add_samples<T>(k, metric);
+    else if (n == 1)
+      add_samples<1>(k, metric);
+    else
+      add_samples<1 + dim>(k, metric);
     add_ridges();
-    if (in.rows_of[k] == in.rows_of[k + 1])
+    if (in.rows_of.first[k] == in.rows_of.first[k + 1])
       solve(single.data(), T, n, rhs.data(), C, coefficients);
     else {
       couple();
@@ -117,6 +80,46 @@ private:
   static constexpr double NEAR = 0.1;  // a sample at the centre counts by 100, one as far as cells reach by about 1
   static constexpr double SAME = 1e-6; // distance over the size of a patch
   using Image = std::array<std::int32_t, 3>; // planes, one after the other
+
+  static constexpr std::int64_t NONE = -1;
+
+  // Of a wide patch without the images by planes through its own corner, of which ``images`` are all.
+  void find_cells(std::size_t k) {
+    const std::int64_t mark = std::int64_t(k);
+    const auto add = [&](std::int64_t cell) {
+      if (seen[cell] != mark) {
+        seen[cell] = mark;
+        cells.push_back(cell);
+      }
+    };
+    cells.clear();
+    for (std::int64_t i = in.around.first[k]; i < in.around.first[k + 1]; ++i)
+      add(in.around.numbers[i]);
+    if (!in.wide[k])
+      return;
+    for (std::int64_t i = in.around.first[k]; i < in.around.first[k + 1]; ++i) {
+      const std::int64_t cell = in.around.numbers[i];
+      for (std::int64_t j = in.corners.first[cell]; j < in.corners.first[cell + 1]; ++j) {
+        const std::int64_t other = in.corners.numbers[j];
+        if (visited[other] == mark)
+          continue;
+        visited[other] = mark;
+        for (std::int64_t l = in.around.first[other]; l < in.around.first[other + 1]; ++l)
+          add(in.around.numbers[l]);
+        for (std::int64_t l = in.images.first[other]; l < in.images.first[other + 1]; ++l)
+          if (!through(k, in.images.numbers[l]))
+            add(std::int64_t(in.n_cells) + in.images.numbers[l]);
+      }
+    }
+  }
+
+  // Whether an image was made by a plane through the patch's corner.
+  bool through(std::size_t k, std::int64_t image) const {
+    for (int a = 0; a < dim; ++a)
+      if (in.by[image * dim + a] >= 0 && in.by[image * dim + a] == in.on[k * dim + a])
+        return true;
+    return false;
+  }
 
   void find_images(std::size_t k) {
     images.assign(1, {-1, -1, -1});
@@ -161,14 +164,16 @@ private:
 
   template <class Call> void each_sample(std::size_t k, Call call) const {
     double x[dim], s[C];
-    for (std::int64_t i = in.cells_of[k]; i < in.cells_of[k + 1]; ++i)
-      for (std::int64_t j = in.first[in.cells[i]]; j < in.first[in.cells[i] + 1]; ++j)
-        for (const Image &image : images) {
+    for (const std::int64_t cell : cells)
+      for (std::int64_t j = in.first[cell]; j < in.first[cell + 1]; ++j) {
+        call(in.x + j * dim, in.stress + j * C);
+        for (std::size_t i = 1; i < images.size(); ++i) {
           std::copy(in.x + j * dim, in.x + (j + 1) * dim, x);
           std::copy(in.stress + j * C, in.stress + (j + 1) * C, s);
-          mirror(image, in.centre + k * dim, 1, x, s);
+          mirror(images[i], in.centre + k * dim, 1, x, s);
           call(x, s);
         }
+      }
   }
 
   static double weight(const double *xi) {
@@ -182,8 +187,8 @@ private:
   void find_metric(std::size_t k, double *metric) const {
     const double *centre = in.centre + k * dim;
     double moments[3][3] = {{0}};
-    for (std::int64_t i = in.cells_of[k]; i < in.cells_of[k + 1]; ++i) {
-      const double *mean = in.spread + in.cells[i] * (dim + 1) * dim;
+    for (const std::int64_t cell : cells) {
+      const double *mean = in.spread + cell * (dim + 1) * dim;
       for (int a = 0; a < dim; ++a)
         for (int b = 0; b < dim; ++b)
           moments[a][b] += mean[(a + 1) * dim + b] + (mean[a] - centre[a]) * (mean[b] - centre[b]);
@@ -200,7 +205,7 @@ private:
         for (int b = 0; b < dim; ++b)
           sum[a][b] += s[AT[a][b]];
     }
-    const double count = double(images.size()) * double(in.cells_of[k + 1] - in.cells_of[k]);
+    const double count = double(images.size()) * double(cells.size());
     for (int a = 0; a < dim; ++a)
       scale += sum[a][a];
     for (int a = 0; a < dim; ++a)
@@ -261,20 +266,28 @@ private:
         }
   }
 
-  void add_samples(std::size_t k, const double *metric) {
+  template <int terms> void add_samples(std::size_t k, const double *metric) {
     const double *centre = in.centre + k * dim;
-    double xi[dim], p[T];
+    double xi[dim], p[T], products[terms][terms] = {{0}}, sums[terms][C] = {{0}};
     each_sample(k, [&](const double *x, const double *s) {
       own(metric, x, centre, xi);
       const double w = weight(xi);
+      double off[C];
+      for (int c = 0; c < C; ++c)
+        off[c] = s[c] - level[c];
       basis(xi, p);
-      for (int i = 0; i < n; ++i) {
-        for (int j = 0; j <= i; ++j)
-          single[i * T + j] += w * p[i] * p[j];
+      for (int i = 0; i < terms; ++i) {
+        const double weighted = w * p[i];
+        for (int j = 0; j < terms; ++j) // the upper half too: loops of one length are quicker
+          products[i][j] += weighted * p[j];
         for (int c = 0; c < C; ++c)
-          rhs[i * C + c] += w * p[i] * (s[c] - level[c]);
+          sums[i][c] += weighted * off[c];
       }
     });
+    for (int i = 0; i < terms; ++i) {
+      std::copy(products[i], products[i] + i + 1, &single[i * T]);
+      std::copy(sums[i], sums[i] + C, &rhs[i * C]);
+    }
   }
 
   // The same fits as one system, term by term; what is minimised does not depend on the axes: shears count twice.
@@ -308,10 +321,10 @@ private:
   void add_rows(std::size_t k, const double *metric) {
     const double *centre = in.centre + k * dim;
     double x[dim], xi[dim], s[C], p[T], all = 0;
-    for (std::int64_t r = in.rows_of[k]; r < in.rows_of[k + 1]; ++r)
-      all += double(images.size()) / double(alike(in.rows[r], centre, metric));
-    for (std::int64_t r = in.rows_of[k]; r < in.rows_of[k + 1]; ++r) {
-      const std::int64_t e = in.rows[r];
+    for (std::int64_t r = in.rows_of.first[k]; r < in.rows_of.first[k + 1]; ++r)
+      all += double(images.size()) / double(alike(in.rows_of.numbers[r], centre, metric));
+    for (std::int64_t r = in.rows_of.first[k]; r < in.rows_of.first[k + 1]; ++r) {
+      const std::int64_t e = in.rows_of.numbers[r];
       const double part = in.heavy * single[0] / all / double(alike(e, centre, metric));
       for (const Image &image : images) {
         std::copy(in.row_x + e * dim, in.row_x + (e + 1) * dim, x);
@@ -380,6 +393,7 @@ private:
   double level[C] = {0};
   std::vector<Image> images;
   std::vector<double> single, rhs, coupled, coupled_rhs;
+  std::vector<std::int64_t> cells, seen, visited; // of the patch; by which patch a cell, a patch has been met last
 };
 
 } // namespace abut

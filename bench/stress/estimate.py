@@ -17,7 +17,7 @@ import numpy as np
 import abut
 from abut._core import shape_functions
 from abut.analysis.stress_error import PRESSED, _around
-from abut.bodies.recovery import carried
+from abut.bodies.patch_fits import carried
 from abut.bodies.stress import point_stress
 from abut.cells import CELLS
 from abut.mesh.quadrature import error_rule

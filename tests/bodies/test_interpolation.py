@@ -13,6 +13,7 @@ from abut.materials.invariants import von_mises
 from abut.mesh.make import box, rectangle
 from abut.mesh.mesh import Mesh
 from abut.types import Array
+from models.interpolation import forces_by_arrays
 
 YOUNG, NU = 3.0, 0.3
 
@@ -83,3 +84,31 @@ def test_round_an_axis() -> None:
     inside = (np.abs(r - 1.5) < 0.4) & (np.abs(mesh.points[:, 1] - 0.5) < 0.4)
     whole = -(3 * lame + 6 * shear) / 36.0 * 2.0 * np.pi * r[inside]
     assert np.abs(own[inside, 0] + found[inside, 0] - whole).max() < 1e-3 * np.abs(whole).max()
+
+
+@pytest.mark.parametrize(("cell", "plane"), [("tri3", "strain"), ("tri3", "axisymmetric"), ("tet4", None)])
+def test_compiled_as_by_arrays(cell: str, plane: str | None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two materials, heated, of stresses that nothing holds together, on one thread and on three; cells in their thousands,
+    so that threads are used."""
+    sizes = (60, 60) if cell == "tri3" else (11, 11, 11)
+    one = rectangle((1, 2), (0, 1), sizes, cell) if cell == "tri3" else box((0, 1), (0, 1), (0, 1), sizes, cell)
+    half = np.arange(one.n_cells) < one.n_cells // 2
+    points = one.points + 0.002 * np.sin(9.0 * one.points[:, ::-1] + np.arange(one.dim))
+    bodies = {"soft": np.flatnonzero(half), "stiff": np.flatnonzero(~half)}
+    mesh = Mesh(points, one.blocks, bodies, {}, {}, axisymmetric=plane == "axisymmetric")
+    materials = {
+        "soft": abut.LinearElastic(YOUNG, NU, expansion=0.1), "stiff": abut.LinearElastic(5.0 * YOUNG, 0.2, expansion=0.3),
+    }  # fmt: skip
+    solids = Solids(mesh, materials, plane)
+    (block,) = mesh.blocks
+    generator = np.random.default_rng(5)
+    stress, heat = generator.normal(size=(*block.nodes.shape, 6)), generator.normal(size=len(points))
+    thermal = np.where(half, 0.1, 0.3)[:, None] * heat[block.nodes]
+    if one.dim == 2:
+        stress[..., 4:] = 0.0
+    known = forces_by_arrays(solids, cell, block.nodes, stress, thermal)
+    monkeypatch.setenv("OMP_NUM_THREADS", "1")
+    found = interpolation_forces(solids, [stress], TemperatureChange(nodes=heat))
+    assert np.abs(found - known).max() < 1e-12 * np.abs(known).max()
+    monkeypatch.setenv("OMP_NUM_THREADS", "3")
+    assert np.array_equal(interpolation_forces(solids, [stress], TemperatureChange(nodes=heat)), found)

@@ -13,6 +13,7 @@ from abut.linear import iterative
 from abut.linear.fractional import inverse_root
 from abut.linear.schur_preconditioner import half_spaces, interfaces, schur_inverse, selection
 from abut.mesh.make import box, join, rectangle
+from abut.nonlinear.again import ENOUGH
 from abut.problem.constraints import supports
 from abut.problem.contact_pairs import pairs
 
@@ -45,6 +46,8 @@ def assert_same(model: abut.Model, limit: float = AGREE) -> abut.Solution:
     assert "multigrid" in iterative.solver
     p, q = iterative.contacts[0].pressure, direct.contacts[0].pressure
     assert np.nanmax(np.abs(p - q)) < limit * np.nanmax(np.abs(q))
+    found, known = iterative.contacts[0].force, direct.contacts[0].force
+    assert np.abs(found - known).max() < AGREE * np.abs(known).max()
     assert all(
         check.passed for check in iterative.certificate if check.name not in ("oscillation", "tension", "resolution")
     )
@@ -59,7 +62,9 @@ def linear_iterations(solution: abut.Solution) -> int:
 @pytest.mark.parametrize("tilt", [0.0, 0.01])
 @pytest.mark.parametrize("cell", ["hex8", "hex20", "hex27", "tet4", "tet10", "wedge6", "wedge15"])
 def test_same_answer_as_the_direct_path(cell: str, tilt: float) -> None:
-    assert_same(blocks(8 if cell in ("hex8", "tet4", "wedge6") else 4, cell, tilt))
+    """Pressures of tet4 are shown from a second solution, which iterations take to ``ENOUGH``."""
+    model = blocks(8 if cell in ("hex8", "tet4", "wedge6") else 4, cell, tilt)
+    assert_same(model, ENOUGH if cell == "tet4" else AGREE)
 
 
 @pytest.mark.parametrize("pressure", ["P0", "dual"])

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from abut.analysis.certificate import NOTHING, Surroundings, certificate
 from abut.analysis.friction import friction_balance, friction_checks, friction_forces, friction_result
-from abut.analysis.interpolation_error import of_simplices
 from abut.analysis.sides import sides_check
 from abut.analysis.statistics import (
     LOADED,
@@ -40,6 +39,7 @@ from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
 from abut.model import LAWS, METHODS
 from abut.problem.pair import Pair
+from abut.problem.straight_cells import of_simplices
 from abut.solution import Check, ContactResult, PressureStatistics, Resultant
 from abut.solution.state import OPEN
 

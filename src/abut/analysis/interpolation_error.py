@@ -10,12 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.analysis.known_stress import mirrored
-from abut.bodies.interpolation import SIMPLEX, interpolation_forces
+from abut.bodies.interpolation import interpolation_forces
+from abut.bodies.patch_fits import Fits, Sampling, fitted
 from abut.bodies.recovery import in_cells
 from abut.bodies.stress import PointStress
 from abut.contact.pressure_space import DUAL, DUAL_P1
-from abut.mesh.mesh import Mesh
-from abut.mesh.surface import Surface
 from abut.nonlinear.again import Imposed
 from abut.nonlinear.attempt import Attempt
 from abut.problem.assembly import Assembled
@@ -23,12 +22,10 @@ from abut.problem.balance import Balance
 from abut.problem.body_terms import heated
 from abut.problem.pair import Pair
 from abut.problem.problem import ContactProblem
+from abut.problem.straight_cells import rounds
 from abut.problem.terms import Motion
 from abut.solution.state import State
 
-# By dimension. The second with the stresses that the first has found: it brings von Mises under a ball of triangles from 6.9
-# to 3.6 %, of tetrahedra from 5.5 to 6.0 (bench/stress/table.py), for which it is too dear. A third changes .5 %.
-ROUNDS = {2: 2, 3: 1}
 SHARED = (DUAL, DUAL_P1)  # spaces: values of second order would sharpen what P1 oscillates by
 NOTHING = 1e-10  # of the largest nodal force: stresses are constant or linear, and so exact
 
@@ -39,30 +36,17 @@ Solve = Callable[[Attempt, Imposed], Attempt]
 class Mended:
     """From what pressures and surface stresses of a step are shown. displacement: (n_points, dim), stress: at integration
     points; pressure: of each pair facet-wise coefficients (9 n_facets,), of the force of its multipliers, None where these
-    stay."""
+    stay; fits: to the stresses of the step as it was solved, of which no equation takes part."""
 
     displacement: NDArray[np.float64]
     stress: PointStress
     pressure: tuple[NDArray[np.float64] | None, ...]
+    fits: Fits
 
 
 def is_mended(problem: ContactProblem) -> bool:
     """Whether there is anything: contact of bodies with such cells, linear materials, small displacements, no friction."""
-    model, pairs = problem.model, problem.pairs
-    if problem.kinematics is not None or not problem.constant or any(pair.frictional for pair in pairs):
-        return False
-    if model.physics or model.penetrations or model.removals or len(problem.springs):
-        return False
-    return any(of_simplices(model.mesh, side).any() for pair in pairs for side in (pair.contactor, pair.target))
-
-
-def of_simplices(mesh: Mesh, side: Surface) -> NDArray[np.bool_]:
-    """(n_facets,) whose cells are triangles or tetrahedra of first order."""
-    result = np.zeros(len(side), dtype=bool)
-    for block, start, end in zip(mesh.blocks, mesh.starts, mesh.starts[1:]):
-        if block.kind in SIMPLEX:
-            result |= (side.cells >= start) & (side.cells < end)
-    return result
+    return problem.constant and not len(problem.springs) and rounds(problem.model, problem.pairs) > 0
 
 
 def mended(assembled: Assembled, attempt: Attempt, solve: Solve) -> Mended | None:
@@ -70,18 +54,20 @@ def mended(assembled: Assembled, attempt: Attempt, solve: Solve) -> Mended | Non
     problem, first = assembled.problem, attempt
     model, solids = problem.model, problem.model.deformable
     known = mirrored(model, solids.points, attempt.time, problem.pairs)
-    for _ in range(ROUNDS[model.dim]):
-        motion, stress = _stresses(assembled, attempt.state)
-        cells = in_cells(solids, solids.points, stress, known)
-        force = interpolation_forces(solids, cells, heated(model, assembled.loaded, motion)).ravel()
+    motion, stress = _stresses(assembled, attempt.state)
+    fits = own = fitted(Sampling.of(solids, solids.points, known), stress, known)
+    for number in range(rounds(model, problem.pairs)):
+        if number:
+            fits = fitted(own.sampling, stress, known)
+        force = interpolation_forces(solids, in_cells(fits), heated(model, assembled.loaded, motion)).ravel()
         if np.abs(force).max(initial=0.0) <= NOTHING * max(first.state.largest.force, 1e-300):
             break
         attempt = solve(first, Imposed(force))
         if not attempt.converged:
             return None
-    motion, stress = _stresses(assembled, attempt.state)
+        motion, stress = _stresses(assembled, attempt.state)
     pressures = tuple(map(_of_resultant, _pressures(problem, attempt), _pressures(problem, first)))
-    return Mended(motion.displacement.reshape(-1, model.dim), stress, pressures)
+    return Mended(motion.displacement.reshape(-1, model.dim), stress, pressures, own)
 
 
 def _stresses(assembled: Assembled, state: State) -> tuple[Motion, PointStress]:

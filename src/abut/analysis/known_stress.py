@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from abut.analysis.surface_slopes import SurfacePoints, surface_stress
 from abut.bodies.bearing import bearing_direction, bearing_pressure
 from abut.bodies.mirror import mirrors
-from abut.bodies.recovery import Equations, no_equations
+from abut.bodies.patch_fits import Equations, no_equations
 from abut.bodies.solids import TemperatureChange
 from abut.cells import MAX_FACET_NODES
 from abut.contact.geometry import area_vectors, full_moments, split_at_creases

@@ -105,13 +105,14 @@ def step_result(
     model, constraints, springs = problem.model, problem.constraints, problem.springs
     linked = np.zeros_like(end.reaction) if constraints.links is None else constraints.links.forces(end.reaction)
     by_supports = (end.reaction - linked).reshape(-1, model.dim)
-    own, moved = assembled.bodies.stress(end.motion), end.nodal if shown is None else shown.displacement
+    own = assembled.bodies.stress(end.motion) if shown is None else shown.fits.stress
+    moved = end.nodal if shown is None else shown.displacement
     points = model.mesh.points if model.small_strains else model.mesh.points + end.nodal
     points, solids = np.ascontiguousarray(points), model.deformable
     contacts = _contacts(end, attempt, before, averages(solids, shown.stress if shown else own), shown)
     change = heated(model, assembled.loaded, end.motion)
     known = known_stress(model, points, moved, state.time, change, list(zip(balance.pairs, contacts)))
-    values = recovered(solids, points, own, known)
+    values = recovered(solids, points, own, known, None if shown is None else shown.fits)
     stress = at_points(solids.patches, values, len(points))
     told = _finite_energy if model.finite else _energy
     acting, work = told(end, attempt, acted, contacts, before)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from abut.bodies.evaluation import History
-from abut.bodies.recovery import carried
+from abut.bodies.patch_fits import carried
 from abut.bodies.solids import Array, Group, Solids
 from abut.bodies.volumes import point_volumes
 from abut.materials.material import history_fields

@@ -26,16 +26,21 @@ class Plane:
 
 @dataclass(frozen=True)
 class ImageCells:
-    """Images of cells, in the order of the columns of ``around`` after the cells' own. cell: (m,) of which each is one;
-    turned: (m, dim) bool, across which axes; move: (m, dim) what an image is moved by beside that; around: (n_patches,
-    n_cells + m) CSR, nonzero where a cell, or an image by planes through a corner, has the patch's corner; own:
-    (n_patches, n_cells + m) CSR, nonzero where an image is one by a plane through the patch's corner."""
+    """Images of cells. cell: (m,) of which each is one; by: (m, dim) number of the plane across each axis that made it, -1
+    for none; move: (m, dim) what an image is moved by beside being turned; around: (n_patches, m) CSR, nonzero where an
+    image by planes through a corner has the patch's corner; on: (n_patches, dim) number of the plane across each axis
+    through the patch's corner, -1 for none."""
 
     cell: NDArray[np.int64]
-    turned: NDArray[np.bool_]
+    by: NDArray[np.int32]
     move: Array
     around: Sparse
-    own: Sparse
+    on: NDArray[np.int32]
+
+    @property
+    def turned(self) -> NDArray[np.bool_]:
+        """(m, dim) across which axes."""
+        return self.by >= 0
 
     def places(self, x: Array, which: NDArray[np.int64]) -> Array:
         """Positions (n, dim) in the images ``which`` (n,)."""
@@ -67,21 +72,23 @@ def planes_of(planes: NDArray[np.int32], centre: Array) -> list[Plane]:
 
 def image_cells(around: Sparse, planes: list[Plane], dim: int) -> ImageCells:
     """around: (n_patches, n_cells) as in ``Patches``. Where planes meet images have images in turn."""
-    n_patches, n_cells = around.shape
-    cell, turned, move = np.arange(n_cells), np.zeros((n_cells, dim), dtype=bool), np.zeros((n_cells, dim))
-    own = sp.csr_matrix((n_patches, n_cells))
-    for plane in planes:
-        rows = np.flatnonzero(plane.on)
-        touching = around[rows].tocoo()
-        free = ~turned[touching.col, plane.axis]
-        columns, new = np.unique(touching.col[free], return_inverse=True)
-        more = sp.csr_matrix((np.ones(len(new)), (rows[touching.row[free]], new)), shape=(n_patches, len(columns)))
-        of_plane = sp.csr_matrix(plane.on.astype(float)[:, None]) @ sp.csr_matrix(np.ones((1, len(columns))))
-        around = sp.hstack([around, more]).tocsr()
-        own = sp.hstack([own, own[:, columns] + of_plane]).tocsr()
-        across = turned[columns].copy()
-        across[:, plane.axis] = True
-        moved = move[columns].copy()
-        moved[:, plane.axis] = 2.0 * plane.level
-        cell, turned, move = (np.concatenate(pair) for pair in ((cell, cell[columns]), (turned, across), (move, moved)))
-    return ImageCells(cell[n_cells:], turned[n_cells:], move[n_cells:], around, own)
+    n_patches = around.shape[0]
+    on = np.full((n_patches, dim), -1, dtype=np.int32)
+    for number, plane in enumerate(planes):
+        on[plane.on, plane.axis] = number
+    rows = np.flatnonzero((on >= 0).any(axis=1))
+    touching = around[rows].tocoo()
+    cell, column = np.unique(touching.col.astype(np.int64), return_inverse=True)
+    row, n_own = rows[touching.row], len(cell)
+    by, move = np.full((n_own, dim), -1, dtype=np.int32), np.zeros((n_own, dim))
+    for number, plane in enumerate(planes):
+        hit = (on[row, plane.axis] == number) & (by[column, plane.axis] < 0)
+        mirrored, new = np.unique(column[hit], return_inverse=True)
+        row, column = np.concatenate([row, row[hit]]), np.concatenate([column, len(cell) + new])
+        across, moved = by[mirrored], move[mirrored]
+        across[:, plane.axis], moved[:, plane.axis] = number, 2.0 * plane.level
+        cell, by, move = (np.concatenate(pair) for pair in ((cell, cell[mirrored]), (by, across), (move, moved)))
+    images = column >= n_own
+    shape = n_patches, len(cell) - n_own
+    of_images = sp.csr_matrix((np.ones(images.sum()), (row[images], column[images] - n_own)), shape=shape)
+    return ImageCells(cell[n_own:], np.ascontiguousarray(by[n_own:]), move[n_own:], of_images, on)

@@ -22,6 +22,7 @@ from abut.mesh.shapes import ratios
 from abut.model import Model
 from abut.problem.pair import Pair
 from abut.problem.springs import Springs
+from abut.problem.straight_cells import rounds
 
 ASSEMBLY = {  # seconds a cell
     "tri3": 1.0e-6, "tri6": 2.5e-6, "quad4": 1.5e-6, "quad8": 4e-6, "quad9": 5e-6, "tet4": 1.5e-6, "tet10": 1.2e-5,
@@ -38,6 +39,9 @@ SEGMENT = {  # seconds a segment between flat facets, between curved ones, with 
 A_PAIR, A_BODY = 8e-3, 4e-4  # seconds a pair and a body, whatever their size
 CUT = 3.0  # all of the interface (normals, gaps, checks) over cutting alone
 RESULT, RESULT_PAIR, RESULT_MULTIPLIER = 8e-6, 3.5e-2, 4e-5  # seconds a step: by free displacement, pair and multiplier
+# Where triangles and tetrahedra of first order are solved once more: seconds a free displacement for the forces and for a
+# substitution with the factors, share of the iterations of a step that multigrid takes
+AGAIN, SUBSTITUTION, AGAIN_KRYLOV = 4e-6, 2e-6, 0.25
 ROW, FRONT = 5e-6, 1.5e-9  # seconds a row of the stiffness, and an operation on a front, to factorise
 ELIMINATIONS = {1: 1, 2: 2}  # of a step, by degree: on quadratic facets functions change where contact is closed
 DENSE, SOLUTION = 1.5e-10, 8e-3  # seconds a cube of the number of multipliers, and a solution, whatever their size
@@ -96,7 +100,8 @@ class Stiffness:
 @dataclass(frozen=True)
 class Effort:
     """What has to be done. cells: of each kind; multipliers, pairs, bodies, steps: how many; cutting: seconds; stretched:
-    mean ratio of the cells' edges; finite: large displacements; changing: small ones with a stiffness that changes."""
+    mean ratio of the cells' edges; finite: large displacements; changing: small ones with a stiffness that changes; again:
+    how often each step is solved once more under the forces that straight cells leave."""
 
     stiffness: Stiffness
     cells: dict[str, int]
@@ -108,6 +113,7 @@ class Effort:
     stretched: float
     finite: bool = False
     changing: bool = False
+    again: int = 0
 
 
 def of_stiffness(mesh: Mesh, displacements: int) -> Stiffness:
@@ -120,6 +126,7 @@ def of_stiffness(mesh: Mesh, displacements: int) -> Stiffness:
 
 def effort(model: Model, displacements: int, pairs: Sequence[Pair]) -> Effort:
     """Count what a model asks for."""
+    changing = not model.finite and _changes(model)
     return Effort(
         stiffness=of_stiffness(model.mesh, displacements),
         cells=_cells(model.mesh),
@@ -129,7 +136,8 @@ def effort(model: Model, displacements: int, pairs: Sequence[Pair]) -> Effort:
         cutting=sum(map(_cutting, pairs)),
         steps=typical_steps(model),
         finite=model.finite,
-        changing=not model.finite and _changes(model),
+        changing=changing,
+        again=0 if changing else rounds(model, pairs),
         stretched=float(np.exp(np.log(ratios(model.mesh)).mean())),
     )
 
@@ -187,8 +195,22 @@ def seconds(effort: Effort, solver: str) -> dict[str, float]:
         "interface": CUT * effort.cutting + A_PAIR * effort.pairs + A_BODY * effort.bodies,
         "solve": solving,
         "results": effort.steps
-        * (RESULT * displacements + RESULT_PAIR * effort.pairs + RESULT_MULTIPLIER * effort.multipliers),
+        * (
+            RESULT * displacements
+            + RESULT_PAIR * effort.pairs
+            + RESULT_MULTIPLIER * effort.multipliers
+            + effort.again * _again(effort, solver)
+        ),
     }
+
+
+def _again(effort: Effort, solver: str) -> float:
+    """Seconds of a further solution of a step."""
+    made = AGAIN * effort.stiffness.displacements
+    if solver == "amg":
+        iterations = AGAIN_KRYLOV * KRYLOV * effort.stretched**STRETCHED
+        return made + effort.stiffness.entries * CYCLE * iterations
+    return made + SUBSTITUTION * effort.stiffness.displacements + DENSE * effort.multipliers**3
 
 
 def _assembly(effort: Effort) -> float:

@@ -28,8 +28,8 @@ REFINEMENTS = 2
 class CondensedProblem:
     """A constant problem on the multipliers and the displacements that had to be kept: ``abut.problem.problem.Problem``.
 
-    Everything but ``whole`` is private: kept: (n_kept,) displacements; factorization: of the rest; stiffness,
-    operator, compliance: theory (V3); pairs: on the kept displacements."""
+    Everything but ``whole`` and ``refinements`` is private: kept: (n_kept,) displacements; factorization: of the rest;
+    stiffness, operator, compliance: theory (V3); pairs: on the kept displacements. refinements: of a step's end."""
 
     whole: ContactProblem
     kept: NDArray[np.int64]
@@ -40,6 +40,7 @@ class CondensedProblem:
     pairs: Sequence[Pair]
     motions: NDArray[np.float64]
     constant: bool = True
+    refinements: int = REFINEMENTS
 
     def start(self) -> State:
         """As in ``Problem``."""
@@ -84,12 +85,14 @@ class CondensedProblem:
         """As in ``Problem``. Eliminated stiff parts under soft ones lose digits by cancellation: the equations of the whole
         problem are met anew by refinement."""
         near, whole = system, self.whole.linearise(before, frame, state)
-        solver = dense(near)
         n = len(whole.load)
         inner = self.factorization.forward(np.concatenate([whole.load, np.zeros(len(whole))]))
         inner[self.kept], inner[n:] = state.unknowns, state.multipliers
         state = replace(state, unknowns=self.factorization.backward(inner)[:n])
-        for _ in range(REFINEMENTS):
+        if not self.refinements:
+            return state, whole
+        solver = dense(near)
+        for _ in range(self.refinements):
             inner = self.factorization.forward(np.concatenate([-whole.unbalanced(state), np.zeros(len(whole))]))
             linear = laws(whole, state)
             opened = [law.residual for law in linear]
