@@ -8,7 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from abut import _core
+from abut._core import interpolation_forces as compiled_forces
+from abut._core import shape_functions
 from abut.bodies.recovery import compliances
 from abut.bodies.solids import Array, Solids, TemperatureChange
 from abut.cells import CELLS
@@ -39,8 +40,8 @@ def interpolation_forces(solids: Solids, stress: Sequence[Array | None], tempera
         nodes = np.ascontiguousarray(block.nodes[cells], dtype=np.int32)
         at = values if len(cells) == len(block.nodes) else values[cells]
         code, rule = CELLS[block.kind].code, gauss_rule(block.kind, ORDER if mesh.axisymmetric else 1)
-        shapes, derivatives = _core.shape_functions(code, np.ascontiguousarray(rule[0]))
-        result += _core.interpolation_forces(
+        shapes, derivatives = shape_functions(code, np.ascontiguousarray(rule[0]))
+        result += compiled_forces(
             solids.points, nodes, np.ascontiguousarray(at), _thermal(solids, temperature, nodes, first + cells),
             (which[first + cells], compliance, stiffness),
             (shapes, np.ascontiguousarray(derivatives[0]), rule[1] / rule[1].sum()), mesh.axisymmetric,
