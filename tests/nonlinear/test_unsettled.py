@@ -5,9 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 import abut
+from abut.mesh.make import rectangle
 from abut.nonlinear.holding import lifted
+from abut.nonlinear.hourglass import hourglassing
 from abut.nonlinear.settings import DEFAULT
 from abut.nonlinear.unsettled import circling, gives_way, most_at
 from models.clamps import NAMED, WHOLE, clamp
@@ -78,3 +81,24 @@ def test_a_law_that_gives_way() -> None:
     assert gives_way(problem, "25 iterations were not enough") == ""
     rubber = [replace(solid, material=abut.NeoHooke(2000.0, 0.35)) for solid in problem.model.solids]
     assert gives_way(replace(problem, model=replace(problem.model, solids=rubber)), reason) == ""
+
+
+@pytest.mark.parametrize(
+    ("integration", "share", "told"), [("b-bar", 0.5, True), ("b-bar", 0.4, False), ("full", 0.5, False)]
+)
+def test_cells_that_fold(integration: str, share: float, told: bool) -> None:
+    """A unit cell bent into an hourglass by u_x = h xi eta keeps its volume; at Gauss's points that is 1 -+ 2 h / sqrt(3) of
+    what it was."""
+    held = abut.Support("bottom", x=lambda p: -share * (2.0 * p[:, 0] - 1.0), y=0.0)
+    rubber = [abut.Solid("body", abut.NeoHooke(1.0, 0.49), integration=integration)]
+    problem = finite(
+        abut.Model(rectangle([0, 1], [0, 1], (1, 1), "quad4"), rubber, [held], plane="strain", kinematics="finite")
+    )
+    points = problem.model.mesh.points
+    bent = np.zeros(points.shape)
+    bent[:, 0] = share * (2.0 * points[:, 0] - 1.0) * (2.0 * points[:, 1] - 1.0)
+    state = replace(problem.start(), time=1.0, unknowns=problem.constraints.free.T @ bent.ravel())
+    assert np.allclose(problem.displacement(state), bent.ravel())
+    line = hourglassing(problem, state)
+    assert (line != "") == told
+    assert not told or f"volume is {1.0 - 2.0 * share / np.sqrt(3.0):.2g} of" in line

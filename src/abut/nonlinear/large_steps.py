@@ -11,6 +11,7 @@ from abut.linear.solver import LinearSolver
 from abut.nonlinear.attempt import Attempt
 from abut.nonlinear.hanging import hanging
 from abut.nonlinear.holding import lifted, overcome
+from abut.nonlinear.hourglass import hourglassing
 from abut.nonlinear.march import Begin, Control
 from abut.nonlinear.one_step import Setting, led_on, stabilised
 from abut.nonlinear.pace import Pace
@@ -88,7 +89,8 @@ def _led(setting: Setting, before: State, pace: Pace, failed: Attempt) -> Sequen
     away = lifted(setting.problem.ahead(before, frame, time), before)
     more = "" if away or goal is None else overcome(setting.problem.ahead(before, frame, goal))
     law = gives_way(setting.problem, failed.reason)
-    told = (failed.reason, law, where, away, more, led.attempts[-1].reason)
+    folded = hourglassing(setting.problem, before)
+    told = (failed.reason, law, folded, where, away, more, led.attempts[-1].reason)
     return [replace(failed, reason="; ".join(filter(None, told)))]
 
 

@@ -70,7 +70,7 @@ def deform(
     displacement: NDArray[np.float64],
     nodal: NDArray[np.float64],
     history: History,
-    since: Since | None,
+    since: Since | None = None,
 ) -> tuple[NDArray[np.float64], float, History] | InsideOut:
     """Nodal forces (dim n_points,), elastic energy and new history of this part; since: as in ``respond``; its tangent is
     kept under ``number``, None for none."""
