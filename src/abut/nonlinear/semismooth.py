@@ -161,7 +161,7 @@ def _solved_again(step: Step, asked: Asked, guess: State | None, time: float) ->
 def _newton(step: Step, guess: State | None, time: float) -> Trial:
     begun = clocks.perf_counter()
     method = LargeMotion(step, begun)
-    here = _balance(step, _carried(step, time) if guess is None else guess, guessed=guess is not None)
+    here = _balance(step, _carried(step, time) if guess is None else guess, step.before, guessed=guess is not None)
     if guess is None:
         method.begun = _report(step, here, begun)
         if _balanced(step, here, np.inf):
@@ -291,9 +291,9 @@ def _carried(step: Step, time: float) -> State:
         state = other
 
 
-def _balance(step: Step, state: State, guessed: bool = False) -> Trial:
-    """The problem near a state, with the status that the laws ask for there."""
-    return _judged(step, step.problem.linearise(step.before, step.frame, state), state, guessed)
+def _balance(step: Step, state: State, since: State, guessed: bool = False) -> Trial:
+    """The problem near a state, reached from another one, with the status that the laws ask for there."""
+    return _judged(step, step.problem.linearise(step.before, step.frame, state, since, guessed), state, guessed)
 
 
 def _judged(step: Step, own: Linearised, state: State, guessed: bool = False) -> Trial:
@@ -319,7 +319,7 @@ def _tried(step: Step, here: Trial, state: State) -> Trial:
     """Near a trial state; under a drag without a size where a cell is beyond its material there, so that less of the way is
     tried."""
     try:
-        return _balance(step, state)
+        return _balance(step, state, here.state)
     except Unsound:
         if step.drag is None:
             raise
