@@ -163,7 +163,7 @@ class Course:
         stuck = np.array_equal(system.restraint.complete(system.forces, wanted, gap) | self.tied, active)
         self.seen.add(active.tobytes())
         repeated = stuck or wanted.tobytes() in self.seen
-        slow = repeated or self._slow(active, rows)
+        slow = repeated or self._slow(rows)
         self.doubtful = False
         if slow:
             _check_balance(self.solver)
@@ -192,14 +192,11 @@ class Course:
         self.lawful = solved.wanted
         return guess
 
-    def _slow(self, active: NDArray[np.bool_], rows: int) -> bool:
+    def _slow(self, rows: int) -> bool:
         """Whether interior points would be quicker."""
-        count, settings = self.changes[-1], self.settings
-        soon = rows < 2 * settings.newton.patience
-        settling = self.foresee and count <= settings.status.settling * active.sum() and soon
-        if hopeless(self.changes, rows, settings) and not (settling or closing(self.violations, rows, settings)):
+        if hopeless(self.changes, rows, self.settings) and not closing(self.violations, rows, self.settings):
             return True
-        return self.doubtful and count >= 0.5 * self.changes[-2]
+        return self.doubtful and self.changes[-1] >= 0.5 * self.changes[-2]
 
 
 def hopeless(changes: Sequence[int], rows: int, settings: Settings) -> bool:

@@ -129,7 +129,7 @@ class InteriorSliding(Method[Trial]):
         settings, least = self._course.increment.settings, largest_pressure(there.here.state, self._course.increment)
         self._short = self._short + 1 if there.here.length < 0.05 else 0
         mean = near(self._programme, there.here).mean
-        if self._short > settings.newton.patience or mean < settings.interior.floor * least**2:
+        if self._short > settings.newton.patience or mean < (settings.newton.stalled * least) ** 2:
             return End.STALLED
         return None
 

@@ -265,7 +265,7 @@ def iterate(at: _Near, manner: Manner) -> Interior:
     for _ in range(4 * at.programme.settings.newton.patience):
         if _central(at, step, length, manner.central):
             break
-        length *= at.programme.settings.interior.shorter
+        length *= 0.5
     state = replace(
         here.state,
         unknowns=here.state.unknowns + length * step.unknowns,

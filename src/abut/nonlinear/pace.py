@@ -127,7 +127,7 @@ class Pace:
         factor = steps.growth if iterations <= steps.easy else steps.shrink if hard else 1.0
         factor = 2.0 if self._given else factor
         if self._share < 1.0 and landed > 0.0:
-            factor = min(factor, max(0.5, math.sqrt(steps.landed / landed)))
+            factor = min(factor, max(0.5, math.sqrt(steps.missed / landed)))
         if not limited or (factor < 1.0 and not first):
             self._length = min(factor * (taken if limited else self._length), self._longest)
 
@@ -163,7 +163,7 @@ class Pace:
         fresh, bent = onset.shares
         if fresh <= self._same or bent <= 0.0:
             return math.inf
-        return max(1.0 / (self._settings.points * fresh), math.sqrt(self._settings.bent / bent))
+        return max(1.0 / (self._settings.points * fresh), math.sqrt(self._settings.missed / bent))
 
     @property
     def _leg(self) -> float:

@@ -102,7 +102,7 @@ class InteriorContact(Method[Inside]):
         self._idle = 0 if at.mean < self._best[0] or missed < self._best[1] else self._idle + 1
         self._best = min(at.mean, self._best[0]), min(missed, self._best[1])
         settings = increment.settings
-        least = settings.interior.floor * largest_pressure(inside.state, increment) ** 2
+        least = (settings.newton.stalled * largest_pressure(inside.state, increment)) ** 2
         floor = self._idle >= settings.newton.patience or at.mean < least
         if not floor and (int(programme.undecided(inside).sum()) > self._few or changed > max(self._few, 2)):
             return Inside(inside, active, solved=here.solved)

@@ -24,7 +24,7 @@ class NewtonSettings:
         "test_finite_newton.py",
     )  # fmt: skip
     stalled: float = _of(
-        1e-7, "of the largest force or pressure", "the same where it no longer falls: rounding",
+        1e-7, "of the largest force or pressure", "the same where it no longer falls: rounding; of a product its square",
         "test_coming_off.py::test_a_stiff_body_comes_from_afar_to_a_soft_one",
     )  # fmt: skip
     rounding: float = _of(
@@ -35,10 +35,6 @@ class NewtonSettings:
         1e-5, "of Young's modulus", "least pressure that laws are judged by", "test_coming_off.py",
     )  # fmt: skip
     halvings: int = _of(6, "halvings", "of a step by a line search", "test_stabilised.py::test_an_arch_snaps_through")
-    decrease: float = _of(
-        0.1, "of the share of a step", "by how much what is left is to shrink with it",
-        "test_stabilised.py::test_an_arch_snaps_through",
-    )  # fmt: skip
     patience: int = _of(3, "iterations", "without progress, or of a short try", "test_search.py")
     solutions: int = _of(
         15, "linear solutions", "of one try for a status", "test_friction_assemblies.py",
@@ -74,11 +70,11 @@ class StepSettings:
     easy: int = _of(6, "iterations", "up to which the next step is longer; shorter above twice as many", "test_pace.py")
     growth: float = _of(1.5, "step over the last one", "after an easy step", "test_pace.py")
     shrink: float = _of(0.7, "step over the last one", "after a hard step", "test_pace.py")
-    landed: float = _of(0.01, "of friction", "at points that touch and stick in one step", "test_step_error.py")
-    points: int = _of(8, "load steps", "over which contact begins to slip, theory (R21)", "test_onset_of_slip.py")
-    bent: float = _of(
-        0.01, "of friction", "missed by the straight line of a step where slip begins", "test_onset_of_slip.py",
+    missed: float = _of(
+        0.01, "of friction", "that a step gets wrong: where points touch and stick in it, and where slip begins in it",
+        "test_step_error.py, test_onset_of_slip.py",
     )  # fmt: skip
+    points: int = _of(8, "load steps", "over which contact begins to slip, theory (R21)", "test_onset_of_slip.py")
     aim: float = _of(0.8, "of the longest step", "that the onset of slip allows", "test_onset_of_slip.py")
     smallest: float = _of(
         1.0 / 4096.0, "of the way to the next goal", "step; its root where the user gives steps", "test_pace.py",
@@ -131,7 +127,6 @@ class StatusSettings:
     misled: float = _of(
         0.25, "of the set", "that changes where it was foreseen wrongly", "test_search.py::test_foreseen_wrongly"
     )
-    settling: float = _of(0.1, "of the set", "below which a foreseen set may settle yet", "test_search.py")
     few: float = _of(0.02, "of the multipliers", "that may change for exact solutions to be tried", "test_search.py")
 
 
@@ -141,11 +136,9 @@ class InteriorSettings:
 
     boundary: float = _of(0.995, "of the way to it", "that a step goes", "test_search.py")
     central: float = _of(1e-3, "of the mean product", "that the smallest keeps", "test_search.py")
-    shorter: float = _of(0.8, "of a step", "tried where it would not", "test_search.py")
     farther: float = _of(0.3, "of a step", "that a corrector aims to gain", "test_search.py")
     worth: float = _of(0.1, "of that gain, of the product aimed at", "below which it is none", "test_search.py")
     undecided: float = _of(0.4, "relative change", "from -1/2: neither closing nor opening", "test_search.py")
-    floor: float = _of(1e-14, "of the largest pressure squared", "mean product that is rounding", "test_search.py")
     steepest: float = _of(100.0, "coefficient of friction", "of surfaces that never slip", "test_friction.py")
     fade: float = _of(0.3, "of the last one", "softness or dilatancy once laws are met", "test_smooth_friction_runs.py")
     met: float = _of(
