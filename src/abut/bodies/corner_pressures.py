@@ -63,8 +63,12 @@ class CornerPressures:
     @cached_property
     def shares(self) -> Array:
         """Volume of each cell by corner, (n, 4)."""
-        linear = linear_functions(self.rule[0])
-        return np.concatenate([volume @ linear for _, _, volume in self._pieces()])
+        return np.asarray(self.point_volumes @ linear_functions(self.rule[0]))
+
+    @cached_property
+    def point_volumes(self) -> Array:
+        """What each point of the rule stands for, (n, q)."""
+        return np.concatenate([volume for _, _, volume in self._pieces()])
 
     @cached_property
     def volume(self) -> Array:
@@ -103,8 +107,7 @@ class CornerPressures:
         """Thermal strains of the cells at their nodes (n, 10) as the pressures see them, (n_corners,)."""
         xi, _ = self.rule
         shapes, linear = shape_functions(CELLS[KIND].code, xi)[0], linear_functions(xi)
-        volume = np.concatenate([volume for _, _, volume in self._pieces()])
-        return self._added((volume * (thermal @ shapes.T)) @ linear) / self.volume
+        return self._added((self.point_volumes * (thermal @ shapes.T)) @ linear) / self.volume
 
     def evaluate(self, growth: Array, swelling: Array | None, finite: bool) -> tuple[Array, Array, Array]:
         """Energy per volume, pressure (the mean stress, > 0 in tension) and its slope at each corner, (n_corners,), at a
