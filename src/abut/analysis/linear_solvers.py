@@ -27,11 +27,6 @@ def assembled_bodies(
     know."""
     if team is not None and model.physics:
         raise InputError("physics: fields beside displacements are solved on one process; start one only")
-    if team is not None and model.deformable.pressures is not None:
-        raise InputError(
-            "solids: pressures of mixed tet10 cells are continuous, and are eliminated on one process; start one only, or "
-            "mesh with hex20 or hex27"
-        )
     if team is None:
         observe(Phase("assembling the stiffness"))
         return serial(model)

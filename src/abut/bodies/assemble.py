@@ -85,7 +85,7 @@ def respond(
     more = pressure_response(solids, moved, temperature, tangent)
     if more is not None:
         total, energy = total + more.force, energy + more.energy
-        slope = None if slope is None else (slope + more.tangent).tocsr()
+        slope = None if slope is None or more.tangent is None else (slope + more.tangent).tocsr()
     return Response(total, slope, history, energy)
 
 

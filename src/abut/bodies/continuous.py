@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -60,9 +61,7 @@ def corner_pressures(solids: Solids, displacement: Array, temperature: Temperatu
     return of.evaluate(growth, _swelling(solids, of, temperature), solids.kinematics == "finite")[1]
 
 
-def add_pressures(
-    solids: Solids, displacement: Array, temperature: TemperatureChange, stress: list[Array]
-) -> None:
+def add_pressures(solids: Solids, displacement: Array, temperature: TemperatureChange, stress: Sequence[Array]) -> None:
     """Adds them to stresses at the integration points of each of ``solids.groups()``, in place."""
     of, pressure = solids.pressures, corner_pressures(solids, displacement, temperature)
     if of is None or pressure is None:

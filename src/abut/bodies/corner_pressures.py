@@ -1,4 +1,4 @@
-"""Pressures that are continuous within a body, one at each corner of its cells: theory (E8) to (E11), (D23).
+"""Pressures that are continuous within a body, one at each corner of its cells: theory (E8) to (E11), (D24).
 
 Mixed tet10 cells. What of the material the change of volume alone decides acts on its mean about each corner, weighted by
 the linear function of that corner; the pressure is linear between corners. The mass matrix of the pressures is lumped, so
@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -24,6 +25,7 @@ from abut.mesh.quadrature import Rule, gauss_rule
 from abut.types import Sparse
 
 KIND, CORNERS = "tet10", 4
+Ints = NDArray[np.integer[Any]]
 
 
 @dataclass(frozen=True)
@@ -131,7 +133,7 @@ class CornerPressures:
         scaled.data *= np.repeat(self.volume * bend, np.diff(rows.indptr))[:, None, None]
         return (rows.T @ scaled).tocsr()
 
-    def bending(self, displacement: Array, pressure: Array, pattern: tuple[Array, Array]) -> Sparse:
+    def bending(self, displacement: Array, pressure: Array, pattern: tuple[Ints, Ints]) -> Sparse:
         """What pressures (n_corners,) add as volumes bend with displacements, (dim n_points, dim n_points) CSR; pattern: CSR
         (indptr, indices) of which nodes share a cell."""
         xi, weights = self.rule
@@ -165,13 +167,13 @@ class CornerPressures:
         indptr, indices, place = self._pattern
         dim = self.points.shape[1]
         columns = values.reshape(-1, dim).T
-        data = np.stack([np.bincount(place, column, len(indices)) for column in columns], axis=1)
-        data /= np.repeat(self.volume, np.diff(indptr))[:, None]
+        sums = np.stack([np.bincount(place, column, len(indices)) for column in columns], axis=1)
+        data = sums / np.repeat(self.volume, np.diff(indptr))[:, None]
         return sp.bsr_matrix((data[:, None, :], indices, indptr), shape=(self.count, self.points.size))
 
     def _added(self, by_cell: Array) -> Array:
         """At each corner, of values (n, 4)."""
-        return np.bincount(self.corner.ravel(), by_cell.ravel(), self.count)
+        return np.asarray(np.bincount(self.corner.ravel(), by_cell.ravel(), self.count), dtype=float)
 
     def _pieces(self) -> Iterator[tuple[NDArray[np.int32], Array, Array]]:
         """Some cells after the other: nodes, gradients (n, q, 10, 3) of shape functions, volumes (n, q)."""
@@ -188,12 +190,12 @@ def linear_functions(xi: Array) -> Array:
     return np.column_stack([1.0 - xi.sum(axis=1), xi])
 
 
-def numbered(nodes: Array, body: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def numbered(nodes: Ints, body: Ints) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Corners of cells with nodes (n, 10) numbered within each body (n,): (n, 4), and the body of each."""
     corner = nodes[:, :CORNERS].astype(np.int64)
     most = int(corner.max()) + 1
     known, place = np.unique(body[:, None] * most + corner, return_inverse=True)
-    return place.reshape(corner.shape), known // most
+    return place.reshape(corner.shape).astype(np.int64), (known // most).astype(np.int64)
 
 
 def _cofactors(slope: Array) -> tuple[Array, Array]:

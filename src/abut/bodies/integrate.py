@@ -26,8 +26,8 @@ def integrate(
     wanted: Wanted,
 ) -> list[Array]:
     """Adds and writes what is wanted of a group, in place; returns its new history, in parts, empty for bodies that go
-    together. Pressures that are continuous are missing (``continuous``). wanted.after is made here. displacement (n_points, dim), None under small strains: none; history None: the
-    initial one.
+    together. wanted.after is made here. Pressures that are continuous are missing (``continuous``). displacement (n_points,
+    dim), None under small strains: none; history None: the initial one.
 
     Raises Inverted, under finite strains, and InputError for materials that return arrays of other shapes."""
     solids = solids.cellwise

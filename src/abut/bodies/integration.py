@@ -13,12 +13,13 @@ from abut.mesh.quadrature import BBAR, CONTINUOUS, PRESSURES, REDUCED
 INTEGRATIONS = ("auto", "full", "reduced", "b-bar", "mixed")
 LOCKING = 0.45 + 1e-9  # Poisson's ratio beyond which "auto" takes b-bar; constants' rounding aside
 SECOND = 0.4996  # the same for cells of second order, which are a few percent too stiff up to there
+TETRAHEDRA = 0.49 - 1e-9  # the same for tetrahedra of second order
 
 
 def resolved(how: str, kinds: Iterable[str], plane: str | None, material: Material, finite: bool = False) -> str:
-    """What "auto" means for a body of some cell types, finite: under finite strains: "full", but where its material hardly changes its volume "b-bar" for
-    cells of first order, "mixed" for those of second order; where it flows "reduced" if that is for all of them. Plane
-    stress does not lock."""
+    """What "auto" means for a body of some cell types, finite: under finite strains: "full", but where its
+    material hardly changes its volume "b-bar" for cells of first order, "mixed" for those of second order; where it flows
+    "reduced" if that is for all of them. Plane stress does not lock."""
     if how != "auto":
         return how
     rest, flows, kinds = linear(material), volume_preserving(material), list(kinds)
@@ -29,7 +30,7 @@ def resolved(how: str, kinds: Iterable[str], plane: str | None, material: Materi
         return "b-bar"
     if flows and poisson < SECOND and all(kind in REDUCED and _locks(kind) for kind in kinds):
         return "reduced"
-    if poisson > SECOND and all(kind in CONTINUOUS for kind in kinds):
+    if poisson > TETRAHEDRA and all(kind in CONTINUOUS for kind in kinds):
         return "full" if volume_split(material, finite) is None else "mixed"
     locked = poisson > SECOND or (flows and all(_locks(kind) for kind in kinds))
     return "mixed" if locked and all(kind in PRESSURES for kind in kinds) else "full"
@@ -78,8 +79,8 @@ def check_continuous(how: str, kinds: Sequence[str], material: Material, finite:
     continuous."""
     if how == "mixed" and any(kind in CONTINUOUS for kind in kinds) and volume_split(material, finite) is None:
         raise InputError(
-            f"{where}: 'mixed' {CONTINUOUS[0]} cells are for isotropic materials with a Poisson's ratio > 0 whose mean stress "
-            "is a matter of the change of volume alone (LinearElastic of small strains, Hencky, NeoHooke, MooneyRivlin and "
+            f"{where}: 'mixed' {CONTINUOUS[0]} cells are for isotropic materials with a Poisson's ratio > 0 whose mean "
+            "stress is a matter of the change of volume alone (LinearElastic of small strains, Hencky, NeoHooke, MooneyRivlin and "
             f"other rubber, Plastic), not for {type(material).__name__} under {'finite' if finite else 'small'} strains; "
             "use 'full', or another material"
         )
@@ -90,8 +91,7 @@ def check_incompressible(how: str, material: Material, plane: str | None, where:
     rest = linear(material)
     if how == "full" and plane != "stress" and rest is not None and rest.poisson == 0.5:
         raise InputError(
-            f"{where}: a Poisson's ratio of 0.5 needs cells that can keep their volume: 'mixed', for "
-            f"{_mixed()} cells"
+            f"{where}: a Poisson's ratio of 0.5 needs cells that can keep their volume: 'mixed', for {_mixed()} cells"
         )
 
 

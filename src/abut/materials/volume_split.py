@@ -21,8 +21,8 @@ class VolumeLaw(Protocol):
 
 @dataclass(frozen=True)
 class VolumeSplit:
-    """A material in two parts that add up. rest: the same with a bulk modulus of the size of its shear modulus, which no cell
-    locks with; volume: all that is left."""
+    """A material in two parts that add up. rest: the same with a bulk modulus of the size of its shear modulus, which locks
+    no cell; volume: all that is left."""
 
     rest: Any
     volume: VolumeLaw
