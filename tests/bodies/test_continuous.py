@@ -240,8 +240,8 @@ def test_contact_with_friction() -> None:
 
 
 def test_plastic() -> None:
-    """Metal that flows in Cook's membrane, at a Poisson's ratio of .3 before: mixed cells and full integration converge to the
-    same."""
+    """Metal that flows in Cook's membrane, at a Poisson's ratio of .3 before: mixed cells and full integration converge to
+    the same."""
     law = Plastic(250.0, 0.3, yield_stress=15.0, hardening=10.0)
     mixed, full = tip(cook(6, law)), tip(cook(6, law, "full"))
     assert mixed == pytest.approx(full, rel=0.1)

@@ -80,8 +80,9 @@ def check_continuous(how: str, kinds: Sequence[str], material: Material, finite:
     if how == "mixed" and any(kind in CONTINUOUS for kind in kinds) and volume_split(material, finite) is None:
         raise InputError(
             f"{where}: 'mixed' {CONTINUOUS[0]} cells are for isotropic materials with a Poisson's ratio > 0 whose mean "
-            "stress is a matter of the change of volume alone (LinearElastic of small strains, Hencky, NeoHooke, MooneyRivlin and "
-            f"other rubber, Plastic), not for {type(material).__name__} under {'finite' if finite else 'small'} strains; "
+            "stress is a matter of the change of volume alone (LinearElastic of small strains, Hencky, NeoHooke, "
+            f"MooneyRivlin and other rubber, Plastic), not for {type(material).__name__} under "
+            f"{'finite' if finite else 'small'} strains; "
             "use 'full', or another material"
         )
 
