@@ -74,7 +74,16 @@ def check_integration(how: str, kinds: Iterable[str], plane: str | None, where: 
         )
 
 
-def check_continuous(how: str, kinds: Sequence[str], material: Material, finite: bool, where: str) -> None:
+def check_resolved(
+    how: str, kinds: Sequence[str], material: Material, plane: str | None, finite: bool, where: str
+) -> None:
+    """Raises InputError, beginning with ``where``, for a material that cells so integrated, "auto" resolved, cannot bear;
+    finite: under finite strains."""
+    _check_continuous(how, kinds, material, finite, where)
+    _check_incompressible(how, material, plane, where)
+
+
+def _check_continuous(how: str, kinds: Sequence[str], material: Material, finite: bool, where: str) -> None:
     """Raises InputError for a material whose mean stress is no matter of the volume alone, where pressures are
     continuous."""
     if how == "mixed" and any(kind in CONTINUOUS for kind in kinds) and volume_split(material, finite) is None:
@@ -87,7 +96,7 @@ def check_continuous(how: str, kinds: Sequence[str], material: Material, finite:
         )
 
 
-def check_incompressible(how: str, material: Material, plane: str | None, where: str) -> None:
+def _check_incompressible(how: str, material: Material, plane: str | None, where: str) -> None:
     """Raises InputError for a Poisson's ratio of 0.5 where cells could not move."""
     rest = linear(material)
     if how == "full" and plane != "stress" and rest is not None and rest.poisson == 0.5:

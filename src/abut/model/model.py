@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut import checks
-from abut.bodies.integration import check_continuous, check_incompressible, check_integration, resolved
+from abut.bodies.integration import check_integration, check_resolved, resolved
 from abut.bodies.solids import Solids
 from abut.contact.bulge import with_bulge
 from abut.contact.contactor_choice import Side
@@ -357,8 +357,7 @@ class Model:
             kinds, how = self._kinds(solid.body), f"solids[{i}].integration"
             check_integration(solid.integration, kinds, self.plane, how)
             check_model(solid.material, self.dim, self.plane, f"solids[{i}].material")
-            check_continuous(self.integration(solid), kinds, solid.material, not self.small_strains, how)
-            check_incompressible(self.integration(solid), solid.material, self.plane, how)
+            check_resolved(self.integration(solid), kinds, solid.material, self.plane, not self.small_strains, how)
         for i, rigid in enumerate(self.rigid):
             if rigid.body in seen:
                 raise InputError(
