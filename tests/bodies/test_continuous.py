@@ -1,4 +1,4 @@
-"""Pressures that are continuous, of mixed tet10 cells: theory (E8) to (E11), (D24)."""
+"""Pressures that are continuous, of mixed tet10 cells: theory (E8) to (E11), (D25)."""
 
 from __future__ import annotations
 

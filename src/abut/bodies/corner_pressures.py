@@ -1,4 +1,4 @@
-"""Pressures that are continuous within a body, one at each corner of its cells: theory (E8), (E9), (E10), (E11), (D24).
+"""Pressures that are continuous within a body, one at each corner of its cells: theory (E8), (E9), (E10), (E11), (D25).
 
 Mixed tet10 cells. What of the material the change of volume alone decides acts on its mean about each corner, weighted by
 the linear function of that corner; the pressure is linear between corners. The mass matrix of the pressures is lumped, so
