@@ -165,6 +165,40 @@ def metal(kinematics: str = "small") -> Any:
     )
 
 
+def volumes(kinematics: str = "small", law: Any = None) -> Any:
+    """The same of mixed tet10 cells, whose pressures belong to corners that processes share; two bodies that stick."""
+    import abut
+    from abut.mesh.make import box, join
+
+    mesh = join(
+        {
+            "block": box([0, 2], [0, 1], [0, 1], cells=[3, 2, 2], cell="tet10"),
+            "punch": box([0.5, 1.2], [0, 1], [1, 1.5], cells=[2, 2, 1], cell="tet10"),
+        }
+    )
+    soft = law or abut.Plastic(1.0, 0.3, 0.005, 0.05)
+    return abut.Model(
+        mesh,
+        [
+            abut.Solid("block", soft, integration="mixed"),
+            abut.Solid("punch", abut.Hencky(10.0, 0.49), integration="mixed")
+            if kinematics == "finite"
+            else abut.Solid("punch", abut.LinearElastic(10.0, 0.49), integration="mixed"),
+        ],
+        [abut.Support("block.bottom", x=0.0, y=0.0, z=0.0), abut.Support("punch.top", x=0.0, y=0.0, z=-0.02)],
+        contacts=[abut.Contact(contactor="block.top", target="punch.bottom", friction=0.3)],
+        solve=abut.SolveOptions(steps=2),
+        kinematics=kinematics,
+    )
+
+
+def rubber_volumes() -> Any:
+    """Mixed tet10 cells of rubber that hardly changes its volume."""
+    import abut
+
+    return volumes("finite", abut.MooneyRivlin(c10=0.12, c01=0.05, bulk=100.0))
+
+
 def softening() -> Any:
     """The example of a user's own material with a history under finite strains."""
     import softening_rubber
@@ -204,6 +238,9 @@ CASES: dict[str, Callable[[], Any]] = {
     "metal": metal,
     "metal-finite": lambda: metal("finite"),
     "softening": softening,
+    "volumes": volumes,
+    "volumes-finite": lambda: volumes("finite"),
+    "volumes-rubber": rubber_volumes,
     "pin-lug": lambda: example("pin-lug/job.toml"),
     **{
         name: partial(finite, name)

@@ -56,6 +56,14 @@ def test_friction(mpirun: Run, n: int, option: str) -> None:
     assert all(option in row["solver"] and row["slip"] > 0.0 for row in found.values())
 
 
+def test_pressures_that_processes_share(mpirun: Run) -> None:
+    """Mixed tet10 cells: metal and rubber, small strains and finite, stick and slip, by factors; multigrid has the pressures
+    in its matrix."""
+    found = compared(mpirun, 3, ["volumes", "volumes-finite", "volumes-rubber"])
+    assert all("direct" in row["solver"] for row in found.values())
+    assert "gamg" in compared(mpirun, 3, ["volumes"], "-pc_type", "gamg")["volumes"]["solver"]
+
+
 @pytest.mark.parametrize("case", ["metal", "metal-finite", "softening"])
 def test_materials_with_a_history(mpirun: Run, case: str) -> None:
     """Metal that yields under small and finite strains, and a user's own law: histories over loading and unloading."""

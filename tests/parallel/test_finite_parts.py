@@ -109,3 +109,27 @@ def test_a_part_without_cells() -> None:
     force, energy, _ = part.deform(store, 0, {}, np.zeros((0, 3)), np.zeros(0), {})
     assert (force.shape, energy) == ((0,), 0.0)
     assert part.product(store, 0, np.zeros(0)).shape == (0,)
+
+
+def test_continuous_pressures_are_added_once() -> None:
+    """Those of mixed tet10 cells, whose corners belong to several processes: forces, energies, stresses, tangents."""
+    mesh = join({"a": box(cells=(2, 2, 2), cell="tet10"), "b": box(z=(1.0, 2.0), cells=(2, 1, 1), cell="hex8")})
+    rubber = abut.MooneyRivlin(c10=0.3, c01=0.2, bulk=500.0, expansion=1e-3)
+    solids = [abut.Solid("a", rubber, integration="mixed"), abut.Solid("b", HEATED)]
+    held = [abut.Support("a.bottom", x=0.0, y=0.0, z=0.0)]
+    for kinematics in ("finite", "small-strain"):
+        if kinematics == "small-strain":
+            solids = [abut.Solid(s.body, abut.LinearElastic(3.0, 0.49), integration=s.integration) for s in solids]
+        one = abut.Model(mesh, solids, held, kinematics=kinematics)
+        whole, parts = serial(one), dealt(one, 4)
+        u, heat = moved(one)
+        mine, theirs = whole.deform(u, heat), parts.deform(u, heat)
+        close(mine.force, theirs.force)
+        assert theirs.energy == pytest.approx(mine.energy, rel=TOLERANCE)
+        for own, other in zip(whole.stress(u, heat), parts.stress(u, heat)):
+            close(own, other)
+        v = np.random.default_rng(5).normal(size=u.size)
+        close(whole.internal(v), parts.internal(v))
+        assert mine.tangent is not None
+        assert theirs.tangent is not None
+        close(mine.tangent.internal(v), theirs.tangent.internal(v))

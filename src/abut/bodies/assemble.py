@@ -9,6 +9,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from abut._core import block_pattern
+from abut.bodies.continuous import pressure_response, pressure_stiffness
 from abut.bodies.evaluation import History
 from abut.bodies.integrate import integrate
 from abut.bodies.solids import UNHEATED, Array, Solids, TemperatureChange
@@ -40,7 +41,8 @@ def stiffness(solids: Solids) -> Sparse:
     for group in solids.groups():
         wanted = Wanted(tangent=(*solids.pattern, values))
         integrate(solids, group, group.rule, None, UNHEATED, None, wanted)
-    return _matrix_of(solids, values)
+    matrix, more = _matrix_of(solids, values), pressure_stiffness(solids)
+    return matrix if more is None else (matrix + more).tocsr()
 
 
 def internal_force(
@@ -81,7 +83,12 @@ def respond(
         energy[group.cells] = of_cells
         after.setdefault(group.body, []).extend(new)
     history = {body: np.concatenate(parts) for body, parts in after.items() if body}
-    return Response(force.ravel(), _matrix_of(solids, values) if values is not None else None, history, energy)
+    total, slope = force.ravel(), None if values is None else _matrix_of(solids, values)
+    more = pressure_response(solids, moved, temperature, tangent)
+    if more is not None:
+        total, energy = total + more.force, energy + more.energy
+        slope = None if slope is None or more.tangent is None else (slope + more.tangent).tocsr()
+    return Response(total, slope, history, energy)
 
 
 def is_symmetric(solids: Solids) -> bool:

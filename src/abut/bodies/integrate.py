@@ -27,10 +27,11 @@ def integrate(
     since: Since | None = None,
 ) -> list[Array]:
     """Adds and writes what is wanted of a group, in place; returns its new history, in parts, empty for bodies that go
-    together. wanted.after is made here. displacement (n_points, dim), None under small strains: none; history None: the
-    initial one; since: from where Newton's method came.
+    together. wanted.after is made here. Pressures that are continuous are missing (``continuous``). displacement (n_points,
+    dim), None under small strains: none; history None: the initial one; since: from where Newton's method came.
 
     Raises Inverted, under finite strains, and InputError for materials that return arrays of other shapes."""
+    solids = solids.cellwise
     if group.kernel is not None:
         return _compiled(solids, group, rule, displacement, temperature, history, wanted, since)
     after, done, told = [], 0, 0

@@ -10,10 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut._core import Cells, node_pattern, shape_functions
+from abut.bodies.corner_pressures import KIND, CornerPressures, numbered
 from abut.cells import CELLS
 from abut.materials.kernel import Kernel
 from abut.materials.material import Material, compiled
 from abut.materials.places import is_local, uniform_expansion
+from abut.materials.volume_split import VolumeSplit, volume_split
 from abut.mesh.mesh import Mesh
 from abut.mesh.patches import Patches, patches
 from abut.mesh.quadrature import PRESSURES, Rule, cell_rule
@@ -72,7 +74,41 @@ class Solids:
 
     @cached_property
     def _groups(self) -> tuple[Group, ...]:
-        return tuple(self._found())
+        return tuple(self.cellwise._found())
+
+    @cached_property
+    def cellwise(self) -> Solids:
+        """What is integrated cell by cell: all but ``pressures``. The same object where there are none."""
+        if not self._split:
+            return self
+        rest = {body: split.rest for body, split in self._split.items()}
+        full = {**self.integration, **dict.fromkeys(rest, "full")}
+        return replace(self, materials={**self.materials, **rest}, integration=full)
+
+    @cached_property
+    def pressures(self) -> CornerPressures | None:
+        """Those that are continuous, theory (E8), None where there are none."""
+        if not self._split:
+            return None
+        parts = [self.mesh.cells_of(body)[0] for body in self._split]  # of one type each
+        body = np.repeat(np.arange(len(parts)), [len(cells) for _, _, cells in parts])
+        nodes = np.ascontiguousarray(np.concatenate([nodes for _, nodes, _ in parts]), dtype=np.int32)
+        corner, owner = numbered(nodes, body)
+        laws = [split.volume for split in self._split.values()]
+        return CornerPressures(
+            self.points, nodes, np.concatenate([cells for _, _, cells in parts]), corner, laws, owner
+        )
+
+    @cached_property
+    def _split(self) -> dict[str, VolumeSplit]:
+        """Bodies whose pressures are continuous."""
+        result = {}
+        for body, material in self.materials.items():
+            if self.integration.get(body) == "mixed" and KIND in {kind for kind, _, _ in self.mesh.cells_of(body)}:
+                split = volume_split(material, self.kinematics == "finite")
+                assert split is not None, f"body '{body}': checked by the model"
+                result[body] = split
+        return result
 
     def _found(self) -> Iterator[Group]:
         kernels, keys = {}, {}

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from abut.bodies.continuous import add_pressures
 from abut.bodies.evaluation import History
 from abut.bodies.integrate import integrate
 from abut.bodies.solids import UNHEATED, Array, Solids, TemperatureChange
@@ -23,10 +24,11 @@ def point_stress(
 
     Raises Inverted, under finite strains, and InputError for materials that return arrays of other shapes."""
     moved = np.ascontiguousarray(displacement, dtype=float)
-    result = []
+    result: list[Array] = []
     for group in solids.groups():
         cells, points = len(group.cells), len(group.rule[1])
         stress = np.empty((cells * points, 6))
         integrate(solids, group, group.rule, moved, temperature, history, Wanted(stress=stress))
         result.append(stress.reshape(cells, points, 6))
+    add_pressures(solids, moved, temperature, result)
     return tuple(result)

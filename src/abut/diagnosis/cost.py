@@ -46,7 +46,8 @@ def foresee(model: Model, constraints: Constraints, pairs: Sequence[Pair]) -> Fo
     petsc = model.solve.linear == "petsc"
     sizes = LARGE_ON_MANY if petsc else LARGE_FINITE if model.finite else LARGE
     thin = one_layer(model.mesh, model.deformable.body_of >= 0)
-    unfit = constraints.coupled if petsc else thin
+    shared = model.deformable.pressures is not None
+    unfit = (constraints.coupled if petsc else thin) or shared
     solver = chosen("auto" if petsc else model.solve.linear, n, pairs, model.mesh, unfit, sizes)
     degree = max(CELLS[block.kind].degree for block in model.mesh.blocks)
     memory = MEMORY[model.dim, "direct" if model.dim == 2 else solver, degree]

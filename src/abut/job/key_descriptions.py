@@ -183,8 +183,9 @@ MEANINGS: dict[str, dict[str, str]] = {
         "material": "name of the material",
         "temperature": "uniform change of temperature that strains the body [temperature]",
         "integration": "how elements integrate their stiffness: full, reduced, b-bar or mixed; the last two do not lock "
-        "near Poisson's ratio 0.5 (b-bar: F-bar with kinematics finite; mixed: pressures of each cell's own); auto: full, "
-        "but where cells would lock b-bar (quad4, hex8), mixed, or in plastic bodies reduced (quad8, hex20)",
+        "near Poisson's ratio 0.5 (b-bar: F-bar with kinematics finite; mixed: pressures of each cell's own, tet10: shared "
+        "at corners); auto: full, but where cells would lock b-bar (quad4, hex8), mixed, or in plastic bodies reduced "
+        "(quad8, hex20)",
     },
     "SupportTable": {
         "on": "name of the surface or node set",

@@ -32,20 +32,21 @@ MANY = 200  # displacements that move many points each, from which on multigrid 
 
 def choose(linear: str, problem: ContactProblem) -> str:
     """ "direct" or "amg" for what the user asked for; "auto" goes by size, and by what multigrid can do. In plates and
-    shells, one cell thick, factors stay small, and thin cells are not for multigrid. Raises InputError where "amg" cannot
-    serve the problem."""
+    shells, one cell thick, factors stay small, and thin cells are not for multigrid; continuous pressures make it
+    converge slowly, if at all. Raises InputError where "amg" cannot serve the problem."""
     sizes = LARGE_FINITE if problem.model.finite else LARGE
     constraints, mesh = problem.constraints, problem.model.mesh
     many = constraints.coupled and int(wide(constraints.free, mesh.dim).sum()) > MANY
-    unfit = many or one_layer(mesh, problem.model.deformable.body_of >= 0)
+    solids = problem.model.deformable
+    unfit = many or one_layer(mesh, solids.body_of >= 0) or solids.pressures is not None
     return chosen(linear, problem.n_free, problem.pairs, mesh, unfit, sizes)
 
 
 def chosen(
     linear: str, n_free: int, pairs: Sequence[Pair], mesh: Mesh, unfit: bool, sizes: Mapping[int, int] = LARGE
 ) -> str:
-    """The same from the number of free displacements and the contact pairs; unfit: too many free displacements belong to
-    several points at once, or the mesh is one cell thick; sizes: from where on multigrid wins."""
+    """The same from the number of free displacements and the contact pairs; unfit: for multigrid, as in ``choose``; sizes:
+    from where on multigrid wins."""
     smooth = [pair.contact.name for pair in pairs if pair.smooth and pair.frictional]
     if linear == "amg" and smooth:
         raise InputError(

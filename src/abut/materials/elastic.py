@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from abut._core import Hyperelastic
 from abut.errors import InputError
 from abut.materials.evaluated import Array, Evaluated
 from abut.materials.kernel import Compiled, HyperelasticKernel, Isotropic
+from abut.materials.volume_split import Powers, VolumeSplit
 
 INCOMPRESSIBLE = 1e7  # bulk over shear modulus at most: volumes change by 1e-7 p / mu, half of the digits are left
 
@@ -77,6 +78,13 @@ class LinearElastic:
         law = HyperelasticKernel(Hyperelastic.SAINT_VENANT_KIRCHHOFF) if finite else Isotropic()
         return Compiled(law, lame(self, None))
 
+    def volume_split(self, finite: bool) -> VolumeSplit | None:
+        """As in ``OwnMaterial``; the law of Saint Venant and Kirchhoff has no part of the volume alone."""
+        if finite or not self.poisson > 0.0:
+            return None
+        bulk, rest = without_bulk(self)
+        return VolumeSplit(rest, Powers([0.5 * bulk]))
+
     def initial(self, n: int) -> Array:
         """It has no history: (n, 0)."""
         return np.zeros((n, 0))
@@ -87,6 +95,12 @@ class LinearElastic:
         tangent = np.diag([2.0 * mu] * 3 + [mu] * 3)
         tangent[:3, :3] += lambda_
         return strain @ tangent, np.broadcast_to(tangent, (len(strain), 6, 6)), history
+
+
+def without_bulk(material: LinearElastic) -> tuple[float, LinearElastic]:
+    """What of the bulk modulus is beyond 2/3 of that of shear, and the material, with that of shear, that has no more."""
+    bulk, shear = bulk_and_shear(material.young, material.poisson)
+    return bulk - 2.0 * shear / 3.0, replace(material, young=2.0 * shear, poisson=0.0)
 
 
 def lame(material: LinearElastic, plane: str | None) -> tuple[float, float]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from abut.errors import InputError
 from abut.materials.elastic import LinearElastic, lame
 from abut.materials.kernel import Compiled, HyperelasticKernel
 from abut.materials.material import Array, Evaluated
+from abut.materials.volume_split import LogSquared, Powers, SquareLog, VolumeLaw, VolumeSplit
 
 VOLUMETRIC = ("square-log", "log-squared", "isochoric")
 LAWS = {
@@ -133,3 +134,16 @@ class NeoHooke:
         lambda_, mu = self.moduli
         first = lambda_ + 2.0 * mu / 3.0 if self.volumetric == "isochoric" else lambda_
         return Compiled(HyperelasticKernel(LAWS[self.volumetric]), (first, mu))
+
+    def volume_split(self, finite: bool) -> VolumeSplit | None:
+        """As in ``OwnMaterial``."""
+        lambda_, mu = self.moduli
+        if not lambda_ > 0.0:
+            return None
+        if not finite:
+            return self.linear.volume_split(False)
+        laws: dict[str, VolumeLaw] = {
+            "square-log": SquareLog(lambda_), "log-squared": LogSquared(lambda_), "isochoric": Powers([0.5 * lambda_]),
+        }  # fmt: skip
+        rest = replace(self, young=None, poisson=None, shear=mu, bulk=2.0 * mu / 3.0, lame=None)
+        return VolumeSplit(rest, laws[self.volumetric])

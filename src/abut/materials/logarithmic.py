@@ -5,15 +5,16 @@ Any law for small strains, with a history or none, becomes one for finite strain
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from abut._core import PointLaw, hooke
-from abut.materials.elastic import LinearElastic, bulk_and_shear
+from abut.materials.elastic import LinearElastic, bulk_and_shear, without_bulk
 from abut.materials.kernel import Compiled, PointKernel
 from abut.materials.material import Array, Evaluated
+from abut.materials.volume_split import LogSquared, VolumeSplit
 
 
 @dataclass(frozen=True)
@@ -93,6 +94,13 @@ class Hencky:
     def compiled(self, finite: bool) -> Compiled | None:
         """As in ``OwnMaterial``."""
         return Compiled(PointKernel(_hooke(self.linear), True)) if finite else self.linear.compiled(False)
+
+    def volume_split(self, finite: bool) -> VolumeSplit | None:
+        """As in ``OwnMaterial``."""
+        if not finite or not self.poisson > 0.0:
+            return self.linear.volume_split(False)
+        bulk, rest = without_bulk(self.linear)
+        return VolumeSplit(replace(self, young=rest.young, poisson=rest.poisson), LogSquared(bulk))
 
 
 def _hooke(material: LinearElastic) -> PointLaw:

@@ -17,6 +17,7 @@ from abut.materials.elastic import LinearElastic
 from abut.materials.evaluated import Array as Array
 from abut.materials.evaluated import Evaluated as Evaluated
 from abut.materials.kernel import Compiled
+from abut.materials.volume_split import VolumeSplit
 
 
 @runtime_checkable
@@ -82,6 +83,11 @@ class OwnMaterial:
 
     def compiled(self, finite: bool) -> Compiled | None:
         """What integrates it in the compiled core; None: it is evaluated in Python."""
+        return None
+
+    def volume_split(self, finite: bool) -> VolumeSplit | None:
+        """The part that the change of volume alone decides, apart from the rest, for cells whose pressures are continuous;
+        None: it has none."""
         return None
 
     def stored(self, strain: Array, history: Array) -> Array | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 from types import MappingProxyType
@@ -13,10 +13,11 @@ import numpy as np
 from abut import checks
 from abut._core import PointLaw, j2
 from abut.errors import InputError
-from abut.materials.elastic import LinearElastic, bulk_and_shear
+from abut.materials.elastic import LinearElastic, bulk_and_shear, without_bulk
 from abut.materials.kernel import Compiled, PointKernel
 from abut.materials.logarithmic import evaluated
 from abut.materials.material import Array, Evaluated
+from abut.materials.volume_split import LogSquared, Powers, VolumeSplit
 
 EQUIVALENT, WORK = "equivalent_plastic_strain", "plastic_work"
 FIELDS = MappingProxyType({"plastic_strain": slice(0, 6), EQUIVALENT: slice(6, 7), WORK: slice(7, 8)})
@@ -145,6 +146,14 @@ class Plastic:
     def compiled(self, finite: bool) -> Compiled | None:
         """As in ``OwnMaterial``."""
         return Compiled(PointKernel(self._law(), finite))
+
+    def volume_split(self, finite: bool) -> VolumeSplit | None:
+        """As in ``OwnMaterial``: flow does not see the mean stress."""
+        if not self.poisson > 0.0:
+            return None
+        bulk, rest = without_bulk(self.linear)
+        law = LogSquared(bulk) if finite else Powers([0.5 * bulk])
+        return VolumeSplit(replace(self, young=rest.young, poisson=rest.poisson), law)
 
     def _law(self) -> PointLaw:
         table = [value for row in self.table for value in row]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import comb
 
 import numpy as np
@@ -15,6 +15,7 @@ from abut.materials.elastic import LinearElastic
 from abut.materials.kernel import Compiled, PointKernel
 from abut.materials.logarithmic import evaluated
 from abut.materials.material import Array, Evaluated
+from abut.materials.volume_split import Powers, VolumeSplit
 
 CHAIN = (1.0 / 2.0, 1.0 / 20.0, 11.0 / 1050.0, 19.0 / 7000.0, 519.0 / 673750.0)  # of Arruda and Boyce (1993)
 
@@ -112,6 +113,13 @@ class Rubber:
     def compiled(self, finite: bool) -> Compiled | None:
         """As in ``OwnMaterial``."""
         return Compiled(PointKernel(self.energy.law(), True)) if finite else self.linear.compiled(False)
+
+    def volume_split(self, finite: bool) -> VolumeSplit | None:
+        """As in ``OwnMaterial``."""
+        if not finite:
+            return self.linear.volume_split(False)
+        kept, (first, *others) = self.energy.shear / 3.0, self._volume
+        return VolumeSplit(replace(self, bulk=2.0 * kept), Powers([first - kept, *others])) if first > kept else None
 
 
 @dataclass(frozen=True, kw_only=True)

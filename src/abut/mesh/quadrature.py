@@ -106,6 +106,11 @@ BBAR = ("quad4", "hex8")  # types whose constant part of the dilatation is worth
 PRESSURES = {"tri6": 1, "quad4": 1, "quad8": 1, "quad9": 3, "hex8": 1, "hex20": 1, "hex27": 4}
 
 
+# Types whose mixed cells share a pressure at each corner with all others of their body, theory (E8): cell by cell none is
+# stable.
+CONTINUOUS = ("tet10",)
+
+
 def cell_rule(kind: str, integration: str) -> Rule:
     """The rule of the stiffness of a cell: smaller for "reduced", else ``stiffness_rule``."""
     return REDUCED[kind]() if integration == "reduced" else stiffness_rule(kind)

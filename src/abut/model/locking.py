@@ -6,12 +6,13 @@ from dataclasses import dataclass
 
 from abut.cells import CELLS
 from abut.materials.material import linear
-from abut.mesh.quadrature import BBAR, PRESSURES, REDUCED
+from abut.mesh.quadrature import BBAR, CONTINUOUS, PRESSURES, REDUCED
 from abut.model.model import Model
 
 STIFF = 24.0  # bulk over shear modulus (Poisson's ratio 0.48) from which first order is some 10 % too stiff
 LOCKED = 100.0  # the same (0.495): by 20 to 30 %
 SECOND = 50.0  # cells of second order bear this many times as much, and are a few percent too stiff at most
+TETRAHEDRA = 10.0  # the same of tetrahedra
 
 
 @dataclass(frozen=True)
@@ -42,9 +43,10 @@ def locking(model: Model) -> list[Locking]:
         for kind in {kind for kind, _, _ in model.mesh.cells_of(solid.body)}:
             cell = CELLS[kind]
             simplex = cell.corners == cell.dim + 1
-            if simplex and cell.degree == 2:  # whose linear stresses leave volume enough freedom
+            if simplex and cell.degree == 2 and cell.dim == 2:  # whose linear stresses leave volume enough freedom
                 continue
-            stiffness = min(ratio / SECOND, LOCKED) if cell.degree == 2 else ratio
+            bears = TETRAHEDRA if kind in CONTINUOUS else SECOND
+            stiffness = min(ratio / bears, LOCKED) if cell.degree == 2 else ratio
             if stiffness > STIFF:
                 found.append(Locking(solid.body, kind, nu, stiffness, _cure(solid.body, kind)))
     return sorted(found, key=lambda one: -one.stiffness)
@@ -53,9 +55,11 @@ def locking(model: Model) -> list[Locking]:
 def _cure(body: str, kind: str) -> str:
     if kind in BBAR:
         return f"integration = \"b-bar\" for body '{body}'"
+    if kind in CONTINUOUS:
+        return f"integration = \"mixed\" for body '{body}'"
     if kind in REDUCED:
         return f"integration = \"reduced\" for body '{body}'"
     if kind in PRESSURES:
         return f"integration = \"mixed\" for body '{body}'"
     better = {2: "tri6 or quad8", 3: "hex20, hex27 or tet10"}[CELLS[kind].dim]
-    return f"mesh body '{body}' with {better} cells, which abut then takes with a pressure of their own (tet10: as they are)"
+    return f"mesh body '{body}' with {better} cells, which abut then takes with pressures of their own where they would lock"

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut import checks
-from abut.bodies.integration import check_incompressible, check_integration, resolved
+from abut.bodies.integration import check_integration, check_resolved, resolved
 from abut.bodies.solids import Solids
 from abut.contact.bulge import with_bulge
 from abut.contact.contactor_choice import Side
@@ -201,7 +201,7 @@ class Model:
 
     def integration(self, solid: Solid) -> str:
         """Of one of the solids, "auto" resolved."""
-        return resolved(solid.integration, self._kinds(solid.body), self.plane, solid.material)
+        return resolved(solid.integration, self._kinds(solid.body), self.plane, solid.material, not self.small_strains)
 
     @property
     def finite(self) -> bool:
@@ -354,9 +354,10 @@ class Model:
             if solid.body in seen:
                 raise InputError(f"solids[{i}].body: body '{solid.body}' has two materials; keep one of them")
             seen.add(solid.body)
-            check_integration(solid.integration, self._kinds(solid.body), self.plane, f"solids[{i}].integration")
+            kinds, how = self._kinds(solid.body), f"solids[{i}].integration"
+            check_integration(solid.integration, kinds, self.plane, how)
             check_model(solid.material, self.dim, self.plane, f"solids[{i}].material")
-            check_incompressible(self.integration(solid), solid.material, self.plane, f"solids[{i}].integration")
+            check_resolved(self.integration(solid), kinds, solid.material, self.plane, not self.small_strains, how)
         for i, rigid in enumerate(self.rigid):
             if rigid.body in seen:
                 raise InputError(

@@ -27,7 +27,8 @@ class Solid:
         Of its cells: "full"; "reduced" (fewer points: softer in bending, for tri6, quad8, tet10, hex20 and wedge15);
         "b-bar" (volume change averaged over each quad4 or hex8: no locking near Poisson's ratio 0.5; F-bar under finite
         deformation, theory (D7)); "mixed" (tri6, quad4, quad8, quad9, hex8, hex20, hex27: pressures of each cell's own,
-        eliminated, theory (E6), (D19): Poisson's ratios up to 0.5); "auto": the first that does not lock.
+        eliminated, theory (E6), (D19); tet10: pressures at corners, theory (E8), (D25), of materials whose mean stress is a
+        matter of the volume alone: Poisson's ratios up to 0.5); "auto": the first that does not lock.
 
     Raises
     ------

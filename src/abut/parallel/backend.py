@@ -9,9 +9,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.bodies.continuous import add_pressures, pressure_response, pressure_stiffness
 from abut.bodies.evaluation import History
 from abut.bodies.inverted import Inverted
-from abut.bodies.solids import TemperatureChange
+from abut.bodies.solids import Solids, TemperatureChange
 from abut.bodies.stress import PointStress
 from abut.contact.coupling import Coupling, CouplingOptions
 from abut.contact.coupling_tangent import ContactLoad, CouplingTangent
@@ -27,6 +28,7 @@ from abut.parallel.partition import Layout, Piece, layout, owners, pieces, point
 from abut.parallel.team import Kept, Team
 from abut.problem.backend import Deformed
 from abut.problem.constraints import Constraints
+from abut.types import Sparse
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,16 @@ class DistributedBodies:
     told: list[tuple[Constraints, Layout]] = field(default_factory=list)
 
     @property
+    def cellwise(self) -> Solids:
+        """What processes integrate; pressures that are continuous belong to no part: process 0 adds them."""
+        return self.model.deformable.cellwise
+
+    @cached_property
+    def pressed(self) -> Sparse | None:
+        """Stiffness of these pressures at rest."""
+        return pressure_stiffness(self.model.deformable)
+
+    @property
     def summary(self) -> str:
         """For the log."""
         cells = [len(piece.cells) for piece in self.pieces]
@@ -51,7 +63,7 @@ class DistributedBodies:
         """Have every process assemble its part."""
         varying = bool(self.model.holds or self.model.springs or self.model.penetrations)  # a stiffness linearised anew
         again = self.model.finite or varying  # iterations ask for it anew
-        arguments = [(replace(self.model.deformable, mesh=piece.mesh), again) for piece in self.pieces]
+        arguments = [(replace(self.cellwise, mesh=piece.mesh), again) for piece in self.pieces]
         self.team.each(part.assemble, per_rank=arguments)
         return self
 
@@ -69,7 +81,8 @@ class DistributedBodies:
     def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
         """As in ``abut.problem.backend.Backend``."""
         arguments = [(share,) for share in self.shares(displacement)]
-        return self.summed(self.team.each(part.internal, per_rank=arguments), displacement)
+        force = self.summed(self.team.each(part.internal, per_rank=arguments), displacement)
+        return force if self.pressed is None else np.asarray(force + self.pressed @ displacement)
 
     def shares(self, values: NDArray[np.float64]) -> list[NDArray[np.float64]]:
         """Values (dim n_points, ...) at the points of each process."""
@@ -86,7 +99,7 @@ class DistributedBodies:
 
     def reduce(self, constraints: Constraints) -> Distributed:
         """As in ``Backend``, a matrix of PETSc's."""
-        return self.reduced("stiffness", constraints)
+        return with_pressures(self.reduced("stiffness", constraints), self.pressed, constraints)
 
     def reduced(self, tangent: str | int, constraints: Constraints) -> Distributed:
         """PETSc's matrix of the tangents that the processes keep under a name or number, which they lose, but for the
@@ -130,6 +143,7 @@ class DistributedBodies:
                 number, rows = place[piece.cells[own]].T
                 for one in np.unique(number):  # groups of the whole end where blocks of cells do
                     result[one][rows[number == one]] = values[number == one]
+        add_pressures(self.model.deformable, np.ascontiguousarray(displacement), change, result)
         return tuple(result)
 
     def deform(
@@ -153,9 +167,12 @@ class DistributedBodies:
         )
         self._require_sound(answers)
         force = self.summed([force for force, _, _ in answers], displacement.ravel())
-        slope = None if kept is None else TangentOfParts(self, kept)
-        after = self._gathered([history for _, _, history in answers])
-        return Deformed(force, slope, sum(energy for _, energy, _ in answers), after)
+        energy = sum(energy for _, energy, _ in answers)
+        more = pressure_response(self.model.deformable, np.ascontiguousarray(displacement), change, tangent)
+        if more is not None:
+            force, energy = force + more.force, energy + float(more.energy.sum())
+        slope = None if kept is None else TangentOfParts(self, kept, None if more is None else more.tangent)
+        return Deformed(force, slope, energy, self._gathered([history for _, _, history in answers]))
 
     def _moved(
         self, displacement: NDArray[np.float64], change: TemperatureChange, history: History | None
@@ -176,7 +193,7 @@ class DistributedBodies:
         result = []
         for piece in self.pieces:
             rows: dict[str, list[NDArray[np.int64]]] = {}
-            for group in replace(self.model.deformable, mesh=piece.mesh).groups() if len(piece.cells) else ():
+            for group in replace(self.cellwise, mesh=piece.mesh).groups() if len(piece.cells) else ():
                 first = start[piece.cells[group.cells]]
                 rows.setdefault(group.body, []).append((first[:, None] + np.arange(len(group.rule[1]))).ravel())
             result.append({body: np.concatenate(parts) for body, parts in rows.items() if body})
@@ -206,20 +223,28 @@ class DistributedBodies:
 
 @dataclass(frozen=True)
 class TangentOfParts:
-    """As ``abut.problem.backend.Tangent``: every process has that of its part, until it is reduced."""
+    """As ``abut.problem.backend.Tangent``: every process has that of its part, until it is reduced; pressed: that of
+    pressures that are continuous, process 0."""
 
     bodies: DistributedBodies
     kept: Kept
+    pressed: Sparse | None = None
 
     def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
         """As in ``Tangent``."""
         arguments = [(share,) for share in self.bodies.shares(displacement)]
         answers = self.bodies.team.each(part.product, self.kept.number, per_rank=arguments)
-        return self.bodies.summed(answers, displacement)
+        force = self.bodies.summed(answers, displacement)
+        return force if self.pressed is None else np.asarray(force + self.pressed @ displacement)
 
     def reduce(self, constraints: Constraints) -> Distributed:
         """As in ``Tangent``, once."""
-        return self.bodies.reduced(self.kept.number, constraints)
+        return with_pressures(self.bodies.reduced(self.kept.number, constraints), self.pressed, constraints)
+
+
+def with_pressures(matrix: Distributed, pressed: Sparse | None, constraints: Constraints) -> Distributed:
+    """A stiffness with what pressures add to it, which belongs to the bodies for multigrid, too."""
+    return matrix if pressed is None else (matrix + constraints.reduce(pressed)).whole()
 
 
 def deal_out(model: Model, team: Team) -> DistributedBodies:

@@ -319,7 +319,8 @@ def choose(problem: ContactProblem) -> str:
             'function for it; choose law = "complementarity", or leave -ksp_type and -pc_type out'
         )
     linear = "amg" if wants_iterations() else "auto"
-    return chosen(linear, problem.n_free, problem.pairs, problem.model.mesh, coupled, LARGE_ON_MANY)
+    unfit = coupled or problem.model.deformable.pressures is not None
+    return chosen(linear, problem.n_free, problem.pairs, problem.model.mesh, unfit, LARGE_ON_MANY)
 
 
 def spread(rows: Sparse, layout: Layout) -> Sparse:

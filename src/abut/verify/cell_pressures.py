@@ -1,4 +1,4 @@
-"""Stability of the pressures that mixed cells have of their own: the numerical inf-sup test."""
+"""Stability of the pressures of mixed cells: the numerical inf-sup test."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
 from abut._core import shape_functions
+from abut.bodies.corner_pressures import KIND, CornerPressures, linear_functions, numbered
 from abut.cells import CELLS
 from abut.dofs import dofs_at
 from abut.mesh.mesh import Mesh
@@ -25,11 +26,30 @@ def cell_inf_sup(mesh: Mesh, free: NDArray[np.bool_], pressures: int, length: fl
     zero at the other points.
 
     A constant that falls as the mesh is refined means pressures that no displacement feels (Chapelle and Bathe 1993)."""
-    divergence = _divergence(mesh, pressures)[:, np.repeat(free, mesh.dim)]
+    divergence = _divergence(mesh, pressures)
+    return _smallest(mesh, divergence, np.eye(divergence.shape[0]), free, length)
+
+
+def continuous_inf_sup(mesh: Mesh, free: NDArray[np.bool_], length: float = 1.0) -> float:
+    """The same over pressures that are linear in tet10 cells and continuous, theory (E8), of a mesh that is one body."""
+    block = next(block for block in mesh.blocks if block.kind == KIND)
+    corner, body = numbered(block.nodes, np.zeros(len(block.nodes), dtype=np.int64))
+    of = CornerPressures(np.ascontiguousarray(mesh.points), block.nodes, np.arange(len(corner)), corner, (), body)
+    divergence = sp.diags(of.volume) @ of.at_rest.rows.tocsr()
+    linear = linear_functions(of.rule[0])
+    products = np.einsum("cq,qv,qw->cvw", of.point_volumes, linear, linear)
+    mass = np.zeros((of.count,) * 2)
+    np.add.at(mass, (corner[:, :, None], corner[:, None, :]), products)
+    return _smallest(mesh, divergence, mass, free, length)
+
+
+def _smallest(mesh: Mesh, divergence: sp.spmatrix, mass: Array, free: NDArray[np.bool_], length: float) -> float:
+    """Root of the smallest eigenvalue; mass: of the pressures."""
     norm = sp.kron(h1_matrix(mesh, length), sp.eye(mesh.dim), format="csc")
     kept = np.flatnonzero(np.repeat(free, mesh.dim))
+    divergence = divergence.tocsc()[:, kept]
     lifted = spla.splu(norm[kept][:, kept].tocsc()).solve(divergence.T.toarray())
-    smallest = scipy.linalg.eigvalsh(divergence @ lifted, subset_by_index=[0, 0])[0]
+    smallest = scipy.linalg.eigvalsh(divergence @ lifted, mass, subset_by_index=[0, 0])[0]
     return float(np.sqrt(max(smallest, 0.0)))
 
 
