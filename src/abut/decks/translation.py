@@ -21,7 +21,7 @@ from abut.decks.friction import friction_options, path_notes
 from abut.decks.holds import holds
 from abut.decks.large import finite_notes, is_finite, load_steps, plastic_steps, unsupported, yields
 from abut.decks.metal import metal_law
-from abut.decks.modes import modes, with_stiff_beams
+from abut.decks.modes import loading_notes, modes, with_stiff_beams
 from abut.decks.nodal import equations, forces, supports
 from abut.decks.output import output_options, tables, with_tables
 from abut.decks.overclosure import overclosure_notes, own_laws, softened
@@ -47,9 +47,11 @@ from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
 from abut.mesh.read import build
 from abut.model import (
+    Buckling,
     Contact,
     Coupling,
     Equation,
+    Frequencies,
     Hold,
     Load,
     Model,
@@ -103,6 +105,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     notes += element_notes(deck)
     deck = cut(expanded(deck, is_finite(deck)))
     notes = [*deck.notes, *notes, *overclosure_notes(deck, soft), *finite_notes(deck), *spring_notes(deck)]
+    notes += loading_notes(deck)
     made = pieces(deck)
     deck = with_ties_by_node(with_parts_coupled(deck, made, notes), notes)
     groups = Groups(deck)
@@ -119,7 +122,9 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     notes += [*_idle(deck, groups), *unlisted_notes(deck), *beside_notes(deck)]
     references = dict(zip([*moving, *(coupling.name for coupling in bound)], reference_nodes(deck)))
     prescribed = _prescribed(deck, groups, parts, plane, references, notes, reasons)
-    asked = tables(deck, groups, notes)
+    asked, vibrations = tables(deck, groups, notes), tuple[Frequencies | Buckling, ...]()
+    with reasons.gathered():
+        vibrations = modes(deck, groups)
     reasons.tell()
     mesh = build(Mesh, groups.raw(), deck.path)
     notes += mesh.notes
@@ -146,7 +151,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
         **vars(prescribed),
         plane=plane,
         kinematics="finite" if finite else "small",
-        modes=modes(deck),
+        modes=vibrations,
         solve=replace(_steps(deck, finite), end=period(deck)),
     )
     model, output = with_tables(model, deck, asked, notes), output_options(model, deck, notes)

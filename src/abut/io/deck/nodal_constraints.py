@@ -248,8 +248,18 @@ def _global(terms: tuple[tuple[int, int, float], ...], local: Mapping[int, Vecto
     return result
 
 
-def _cyclic(deck: Deck, groups: Groups, symmetry: CyclicSymmetry) -> list[Bond]:
-    """The displacement of every slave node is that of its master node, turned by one sector."""
+@dataclass(frozen=True)
+class _Partners:
+    """Slave nodes (n,) and the master nodes (n,) one sector on, in turn; turn: (3, 3) from master to slave, by a positive
+    angle about the axis where ``forward``."""
+
+    slaves: Numbers
+    masters: Numbers
+    turn: Vector
+    forward: bool
+
+
+def _partners(deck: Deck, groups: Groups, symmetry: CyclicSymmetry) -> _Partners:
     nodes = {}
     for side in (symmetry.slave, symmetry.master):
         surface = deck.surfaces[side]
@@ -271,14 +281,38 @@ def _cyclic(deck: Deck, groups: Groups, symmetry: CyclicSymmetry) -> list[Bond]:
             f"*CYCLIC SYMMETRY MODEL: node {worst} of '{symmetry.slave}' has no partner on "
             f"'{symmetry.master}' one sector on; mesh both sides alike",
         )
-    result = []
-    for slave, master in zip(nodes[symmetry.slave].tolist(), nodes[symmetry.master][match].tolist()):
+    return _Partners(nodes[symmetry.slave], nodes[symmetry.master][match], turn, best == 0)
+
+
+def _cyclic(deck: Deck, groups: Groups, symmetry: CyclicSymmetry) -> list[Bond]:
+    """The displacement of every slave node is that of its master node, turned by one sector."""
+    result, found = [], _partners(deck, groups, symmetry)
+    for slave, master in zip(found.slaves.tolist(), found.masters.tolist()):
         for k in range(3):
             terms = {(slave, k): 1.0}
             for j in range(3):
-                terms[master, j] = terms.get((master, j), 0.0) - float(turn[k, j])
+                terms[master, j] = terms.get((master, j), 0.0) - float(found.turn[k, j])
             result.append(Bond(terms, NOTHING, symmetry.place))
     return result
+
+
+def turned_side(deck: Deck, groups: Groups) -> Numbers:
+    """The slave nodes of cyclic symmetry. Raises DeckError where vibrations that differ between sectors would need more than
+    a phase between these nodes and their partners."""
+    found = [_partners(deck, groups, symmetry) for symmetry in deck.cyclic]
+    slaves = np.unique(np.concatenate([part.slaves for part in found]))
+    masters = np.unique(np.concatenate([part.masters for part in found]))
+    place, what = deck.cyclic[0].place, ""
+    linked = {node for equation in deck.equations for node, *_ in equation.terms}
+    if len({part.forward for part in found}) > 1 or len({symmetry.sectors for symmetry in deck.cyclic}) > 1:
+        what = "the slaves lie on different sides of the sector, or the numbers of sectors differ: give all alike"
+    elif len(on_both := np.intersect1d(slaves, masters)):
+        what = f"node {int(on_both[0])} is on both sides, as on the axis: leave a hole there"
+    elif linked & set(slaves.tolist()):
+        what = f"node {min(linked & set(slaves.tolist()))} of the slave stands in an equation, too: give its nodes none"
+    if what:
+        raise DeckError(place, f"*CYCLIC SYMMETRY MODEL: nodal diameters other than 0 are not found where {what}")
+    return slaves
 
 
 def _turn(axis: Vector, angle: float) -> Vector:
