@@ -6,8 +6,8 @@ from dataclasses import replace
 
 from abut.decks.large import is_finite
 from abut.io.deck.groups import Groups
-from abut.io.deck.nodal_constraints import turned_side
 from abut.io.deck.record import Block, Deck
+from abut.io.deck.sectors import turned_side
 from abut.model import Buckling, Frequencies
 
 

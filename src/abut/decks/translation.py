@@ -102,10 +102,9 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
         reasons.add(error)
     plane, deck = plane_of(deck), with_stiff_beams(deck)
     notes = [f"{block.code}: {block.type.instead}" for block in deck.blocks if block.type.instead]
-    notes += element_notes(deck)
+    notes += [*element_notes(deck), *loading_notes(deck)]
     deck = cut(expanded(deck, is_finite(deck)))
     notes = [*deck.notes, *notes, *overclosure_notes(deck, soft), *finite_notes(deck), *spring_notes(deck)]
-    notes += loading_notes(deck)
     made = pieces(deck)
     deck = with_ties_by_node(with_parts_coupled(deck, made, notes), notes)
     groups = Groups(deck)
@@ -122,9 +121,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     notes += [*_idle(deck, groups), *unlisted_notes(deck), *beside_notes(deck)]
     references = dict(zip([*moving, *(coupling.name for coupling in bound)], reference_nodes(deck)))
     prescribed = _prescribed(deck, groups, parts, plane, references, notes, reasons)
-    asked, vibrations = tables(deck, groups, notes), tuple[Frequencies | Buckling, ...]()
-    with reasons.gathered():
-        vibrations = modes(deck, groups)
+    asked, vibrations = tables(deck, groups, notes), _vibrations(deck, groups, reasons)
     reasons.tell()
     mesh = build(Mesh, groups.raw(), deck.path)
     notes += mesh.notes
@@ -156,6 +153,13 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     )
     model, output = with_tables(model, deck, asked, notes), output_options(model, deck, notes)
     return Translation(model, tuple(notes), deck.ignored, laws, output)
+
+
+def _vibrations(deck: Deck, groups: Groups, reasons: Reasons) -> tuple[Frequencies | Buckling, ...]:
+    result: tuple[Frequencies | Buckling, ...] = ()
+    with reasons.gathered():
+        result = modes(deck, groups)
+    return result
 
 
 def _check_something_is_there(deck: Deck) -> None:
