@@ -34,7 +34,7 @@ class Frequencies:
     sectors : float
         How many sectors like the modelled one make up the whole turn, where there are nodal diameters other than 0.
     side : str
-        The node set on one side of the sector whose ``Equation``s say that it moves as the other side does, turned by one
+        The node set on one side of the sector whose equations say that it moves as the other side does, turned by one
         sector. Every equation between these nodes and others is taken to be one of those.
 
     Raises
