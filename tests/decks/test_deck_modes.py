@@ -13,6 +13,7 @@ import pytest
 
 import abut
 from abut.errors import InputError
+from abut.job.convert import write_job
 from abut.job.load import load_job
 
 LENGTH, CELLS = 100.0, 20
@@ -149,6 +150,26 @@ def test_nodal_diameters_beside_calculix(tmp_path: Path, loaded: bool) -> None:
     for result in found:
         theirs = [float(value) for diameter, value in rows if int(diameter) == result.diameter]
         np.testing.assert_allclose(result.eigenvalues, theirs, rtol=2e-6)
+
+
+@pytest.mark.parametrize("count", [6, 10])
+def test_converted_decks_ask_for_the_same(tmp_path: Path, count: int) -> None:
+    """Ten loaded modes are what a job file has where nothing is said."""
+    path = tmp_path / "deck.inp"
+    steps = [
+        "*STEP\n*STATIC\n*END STEP",
+        around(0, 2).replace("*STEP", "*STEP, PERTURBATION", 1).replace("\n6\n", f"\n{count}\n"),
+    ]
+    path.write_text(sector(*steps), encoding="utf-8")
+    job = load_job(path)
+    written, _ = write_job(tmp_path / "job.toml", job)
+    assert load_job(written).model.modes == job.model.modes
+    path.write_text(
+        bar("", steps[0], steps[1].replace("*SELECT CYCLIC SYMMETRY MODES, NMIN=0, NMAX=2\n", "")), encoding="utf-8"
+    )
+    job = load_job(path)
+    written, _ = write_job(tmp_path / "plain.toml", job)
+    assert load_job(written).model.modes == job.model.modes == (abut.Frequencies(count),)
 
 
 def test_several_steps_of_nodal_diameters(tmp_path: Path) -> None:
