@@ -40,7 +40,7 @@ REASONS = (
     ),
     (
         r"FREQUENCY|BUCKLE|MULTISTAGE",
-        "frequencies and buckling but of one step, or the last, with the nodal diameter 0",
+        "frequencies of the unloaded model beside contact or large displacements, complex, multistage",
         "the step in a deck of its own",
     ),
     (
@@ -50,6 +50,8 @@ REASONS = (
         "solids there, or the section by its rectangle",
     ),
     (r"HYPERFOAM|DEFORMATION PLASTICITY|incompressible", "other materials", "`*PLASTIC`, `*HYPERELASTIC` with D1 > 0"),
+    (r"CYCLIC", "sides of a sector that are meshed unlike", "mesh both sides alike"),
+    (r"REFINE", "refinement of the mesh", "refine it in the preprocessor"),
     (r"\*MPC", "nonlinear `*MPC`", "`*EQUATION`, `*COUPLING`, or small displacements"),
     (r"two of them together", "plane stress and axisymmetry in one deck", "one of the two"),
     (r"TRANSFORM", "axes of cylindrical coordinates on their axis", "leave the nodes on the axis out"),
