@@ -52,7 +52,8 @@ public:
                             std::optional<Matrix<double>> displacement, std::optional<Matrix<double>> thermal,
                             std::optional<Matrix<double>> before, std::optional<Output<2>> force,
                             std::optional<Tangent> tangent, std::optional<Output<2>> stress,
-                            std::optional<Output<1>> energy, std::optional<Output<2>> after) const = 0;
+                            std::optional<Output<1>> energy, std::optional<Output<2>> after,
+                            std::optional<Matrix<double>> earlier, bool guessed) const = 0;
 };
 
 template <class Law> class Held final : public PointLaw {
@@ -71,7 +72,8 @@ public:
   Failure integrate(const CellArrays &cells, bool finite, bool plane_stress, std::optional<Matrix<double>> displacement,
                     std::optional<Matrix<double>> thermal, std::optional<Matrix<double>> before,
                     std::optional<Output<2>> force, std::optional<Tangent> tangent, std::optional<Output<2>> stress,
-                    std::optional<Output<1>> energy, std::optional<Output<2>> after) const override {
+                    std::optional<Output<1>> energy, std::optional<Output<2>> after,
+                    std::optional<Matrix<double>> earlier, bool guessed) const override {
     const std::size_t points = cells.integration_points(), h = law.history;
     if ((before && (before->shape(0) != points || before->shape(1) != h)) ||
         (after && (after->shape(0) != points || after->shape(1) != h)) || (energy && energy->shape(0) != cells.count()))
@@ -80,7 +82,7 @@ public:
       throw nb::value_error("laws at points need displacements");
     Results results = cells.results(force, tangent, stress);
     results.energy = energy ? energy->data() : nullptr;
-    const State state = cells.state(displacement, thermal);
+    const State state = cells.state(displacement, thermal, earlier, guessed);
     const double *old = before && h ? before->data() : nullptr;
     double *now = after && h ? after->data() : nullptr;
     const Unsound unsound =
@@ -149,6 +151,7 @@ void bind_laws(nb::module_ &m) {
            nb::arg("before").noconvert() = nb::none(), nb::arg("force").noconvert() = nb::none(),
            nb::arg("tangent").noconvert() = nb::none(), nb::arg("stress").noconvert() = nb::none(),
            nb::arg("energy").noconvert() = nb::none(), nb::arg("after").noconvert() = nb::none(),
+           nb::arg("earlier").noconvert() = nb::none(), nb::arg("guessed") = false,
            "As ``integrate_isotropic`` and ``integrate_hyperelastic``; before and after: histories (cells q, h).");
   nb::class_<J2OverTemperature>(m, "J2OverTemperature",
                                 "Von Mises plasticity whose constants depend on the temperature.")
