@@ -33,6 +33,7 @@ ANISO = (
 WARM = "*EXPANSION, TYPE=ORTHO, ZERO=-50.\n1e-4, 2e-5, 3e-5, 20.\n2e-4, 1e-5, 2e-5, 150.\n"
 TABLE = "*ELASTIC\n210., 0.3, 0.\n150., 0.35, 400.\n*EXPANSION, ZERO=20.\n1e-4, 0.\n2e-4, 150.\n"
 SPACE = "*ORIENTATION, NAME=O\n1., 0.5, 0.2, 0., 1., 0.7\n"
+TURNED = "*ORIENTATION, NAME=O\n1., 0.5, 0.2, 0., 1., 0.7\n{axis}, 35.\n"
 ROUND = "*ORIENTATION, NAME=O, SYSTEM=CYLINDRICAL\n0., 0., 0., 0., 0., 1.\n"
 PLANE = "*ORIENTATION, NAME=O\n1., 0.5, 0., -0.5, 1., 0.\n"
 
@@ -88,6 +89,10 @@ DECKS = {
     "reduced": deck(tube(), "C3D20R", ENGINEERING + WARM + ROUND, TUBE_HELD, HOT + "*CLOAD\nright, 1, 0.01\n"),
     "ortho": deck(BLOCK, "C3D20", ORTHO + SPACE, FOOT, "*CLOAD\ntop, 1, 0.1\ntop, 3, 0.2\n"),
     "aniso": deck(BLOCK, "C3D20R", ANISO + WARM + SPACE, FOOT, HOT + "*CLOAD\ntop, 1, 0.1\n"),
+    **{
+        f"turned about {axis}": deck(BLOCK, "C3D20", ORTHO + TURNED.format(axis=axis), FOOT, "*CLOAD\ntop, 1, 0.1\n")
+        for axis in (1, 2, 3)
+    },
     "bricks": deck(BRICKS, "C3D8", ENGINEERING + WARM + SPACE, FOOT, "*TEMPERATURE\nbottom, 60.\ntop, 200.\n"),
     "table": deck(BRICKS, "C3D8", TABLE, FOOT, "*TEMPERATURE\nbottom, 60.\ntop, 300.\n*CLOAD\ntop, 1, 0.1\n"),
     "plane strain": deck(rectangle((1, 2), (0, 1), (2, 2), "quad8"), "CPE8", ENGINEERING + WARM + PLANE, FOOT[:-2] + "2\n",
@@ -120,11 +125,19 @@ def test_isotropic_material_needs_no_orientation(tmp_path: Path) -> None:
     assert loaded(tmp_path, text).model.solids[0].material == abut.LinearElastic(200.0, 0.3)
 
 
+def test_an_origin_of_its_own(tmp_path: Path) -> None:
+    """Abaqus: the points a and b of rectangular axes are seen from the third one."""
+    here = deck(BLOCK, "C3D20", ORTHO + SPACE, FOOT, "")
+    moved = deck(BLOCK, "C3D20", ORTHO + "*ORIENTATION, NAME=O\n2., 3.5, 4.2, 1., 4., 4.7, 1., 3., 4.\n", FOOT, "")
+    one, other = (loaded(tmp_path, text).model.solids[0].material.axes for text in (here, moved))
+    np.testing.assert_allclose(np.array([one.x, one.xy]), np.array([other.x, other.xy]), atol=1e-12)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
         ("SYSTEM=CYLINDRICAL", "SYSTEM=SPHERICAL", r"\*ORIENTATION: SYSTEM=SPHERICAL is not supported"),
-        ("0., 0., 0., 0., 0., 1.\n", "0., 0., 0., 0., 0., 1.\n3, 20.\n", r"\*ORIENTATION: a turn about one of the axes"),
+        ("0., 0., 0., 0., 0., 1.\n", "0., 0., 0., 0., 0., 1.\n3, 20.\n", r"\*ORIENTATION: a turn of cylindrical axes"),
         ("0., 0., 0., 0., 0., 1.\n", "0., 0., 0., 0., 0., 0.\n", r"\*ORIENTATION: the two points are the same"),
         ("*ORIENTATION, NAME=O", "*ORIENTATION, NAME=P", "no orientation named 'O'"),
         ("TYPE=ORTHO, ZERO=-50.", "TYPE=ANISO", r"\*EXPANSION: TYPE=ANISO is not supported"),

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import re
+import shutil
+import subprocess
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +13,7 @@ import pytest
 
 import abut
 from abut.errors import InputError
+from abut.job.convert import write_job
 from abut.job.load import load_job
 
 LENGTH, CELLS = 100.0, 20
@@ -69,8 +74,8 @@ def test_a_buckling_step_has_its_own_loads(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "steps",
     [
-        FREQUENCY + "\n*STEP\n*STATIC\n*END STEP",
-        "*STEP\n*STATIC\n*END STEP\n" + FREQUENCY,
+        FREQUENCY + "\n*STEP\n*STATIC\n*BOUNDARY\nFREE, 1\n*END STEP",
+        "*STEP, NLGEOM\n*STATIC\n*END STEP\n" + FREQUENCY,
         FREQUENCY.replace("\n2\n", "\n2, , 100.\n"),
         FREQUENCY.replace("*FREQUENCY", "*FREQUENCY, STORAGE=YES"),
         FREQUENCY.replace("\n2\n", "\n2\n*CLOAD\nFREE, 1, 1.\n"),
@@ -80,6 +85,112 @@ def test_a_buckling_step_has_its_own_loads(tmp_path: Path) -> None:
 def test_what_is_not_read_is_refused(tmp_path: Path, steps: str) -> None:
     with pytest.raises(InputError, match="FREQUENCY"):
         solution(tmp_path, bar("", steps))
+
+
+@pytest.mark.parametrize("first", [True, False])
+def test_a_step_without_perturbation_is_about_the_unloaded_model(tmp_path: Path, first: bool) -> None:
+    """A pull that would raise the square of the frequency by sigma / E = 0.01 does not."""
+    pull = "*STEP\n*STATIC\n*CLOAD\nFREE, 1, 8400.\n*END STEP"
+    steps = [FREQUENCY, pull] if first else [pull, FREQUENCY]
+    both = solution(tmp_path, bar("ALL, 2, 3", *steps))
+    alone = solution(tmp_path, bar("ALL, 2, 3", FREQUENCY)).modes[0].values
+    np.testing.assert_allclose(both.modes[0].values, alone, rtol=1e-12)
+    stretched = 4.0 * 8400.0 * LENGTH / (YOUNG * 16.0)
+    np.testing.assert_allclose(np.abs(both.displacement).max(), stretched, rtol=1e-9)
+
+
+def sector(*steps: str) -> str:
+    """A twelfth of a ring of C3D8, bore 1, outer radius 3, 0.5 thick, held at its bore."""
+    number: dict[tuple[int, int, int], int] = {}
+    nodes = []
+    for i, (r, turn, z) in enumerate(
+        product(np.linspace(1.0, 3.0, 4), np.radians(np.linspace(0.0, 30.0, 4)), (0.0, 0.5))
+    ):
+        number[i // 8, i // 2 % 4, i % 2] = i + 1
+        nodes.append(f"{i + 1}, {r * np.cos(turn):.12e}, {r * np.sin(turn):.12e}, {z}")
+    corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+    cells = [
+        f"{k + 1}, " + ", ".join(str(number[i + a, j + b, c]) for a, b, c in corners)
+        for k, (i, j) in enumerate(product(range(3), range(3)))
+    ]
+    sides = [[str(n) for (i, j, _), n in number.items() if i and j == side] for side in (0, 3)]
+    rim = [str(n) for (i, *_), n in number.items() if i == 3]
+    held = [f"{n}, 1, 3" for (i, *_), n in number.items() if not i]
+    return "\n".join(
+        [
+            "*NODE, NSET=ALL", *nodes, "*ELEMENT, TYPE=C3D8, ELSET=RING", *cells, "*NSET, NSET=FIRST", ",\n".join(sides[0]),
+            "*NSET, NSET=LAST", ",\n".join(sides[1]), "*SURFACE, NAME=SF, TYPE=NODE", "FIRST",
+            "*SURFACE, NAME=SL, TYPE=NODE", "LAST", "*TIE, CYCLIC SYMMETRY, NAME=T", "SL, SF",
+            "*CYCLIC SYMMETRY MODEL, N=12, TIE=T, ELSET=RING", "0., 0., 0., 0., 0., 1.",
+            "*NSET, NSET=RIM", ",\n".join(rim), "*TRANSFORM, NSET=RIM, TYPE=C", "0., 0., 0., 0., 0., 1.",
+            "*MATERIAL, NAME=STEEL", "*ELASTIC", f"{YOUNG}, 0.3", "*DENSITY", f"{DENSITY}",
+            "*SOLID SECTION, ELSET=RING, MATERIAL=STEEL", "*BOUNDARY", *held, *steps,
+        ]
+    )  # fmt: skip
+
+
+def around(lowest: int, highest: int) -> str:
+    chosen = f"*SELECT CYCLIC SYMMETRY MODES, NMIN={lowest}, NMAX={highest}\n"
+    return FREQUENCY.replace("\n2\n", f"\n6\n{chosen}")
+
+
+@pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not installed")
+@pytest.mark.parametrize("loaded", [False, True])
+def test_nodal_diameters_beside_calculix(tmp_path: Path, loaded: bool) -> None:
+    """Squares of angular frequencies to the seven digits that CalculiX prints; pulled outwards, with NLGEOM, by stresses of
+    Young's modulus over a hundred. (Without NLGEOM CalculiX has strains of the loaded state in the stiffness, too.)"""
+    steps = [around(1, 3)]
+    if loaded:
+        pull = "*STEP, NLGEOM\n*STATIC\n*CLOAD\nRIM, 1, 200.\n*END STEP"
+        steps = [pull, around(1, 3).replace("*STEP", "*STEP, PERTURBATION", 1)]
+    found = solution(tmp_path, sector(*steps)).modes
+    assert [result.diameter for result in found] == [1, 2, 3]
+    subprocess.run(["ccx", "deck"], cwd=tmp_path, check=True, capture_output=True, timeout=60)
+    rows = re.findall(r"^ +([123]) +\d+ +(\S+) +\S+ +\S+ +\S+ *$", (tmp_path / "deck.dat").read_text(), re.MULTILINE)
+    for result in found:
+        theirs = [float(value) for diameter, value in rows if int(diameter) == result.diameter]
+        np.testing.assert_allclose(result.eigenvalues, theirs, rtol=2e-6)
+
+
+@pytest.mark.parametrize("count", [6, 10])
+def test_converted_decks_ask_for_the_same(tmp_path: Path, count: int) -> None:
+    """Ten loaded modes are what a job file has where nothing is said."""
+    path = tmp_path / "deck.inp"
+    steps = [
+        "*STEP\n*STATIC\n*END STEP",
+        around(0, 2).replace("*STEP", "*STEP, PERTURBATION", 1).replace("\n6\n", f"\n{count}\n"),
+    ]
+    path.write_text(sector(*steps), encoding="utf-8")
+    job = load_job(path)
+    written, _ = write_job(tmp_path / "job.toml", job)
+    assert load_job(written).model.modes == job.model.modes
+    path.write_text(
+        bar("", steps[0], steps[1].replace("*SELECT CYCLIC SYMMETRY MODES, NMIN=0, NMAX=2\n", "")), encoding="utf-8"
+    )
+    job = load_job(path)
+    written, _ = write_job(tmp_path / "plain.toml", job)
+    assert load_job(written).model.modes == job.model.modes == (abut.Frequencies(count),)
+
+
+def test_several_steps_of_nodal_diameters(tmp_path: Path) -> None:
+    """The same as one step for all."""
+    one = solution(tmp_path, sector(around(0, 2))).modes
+    three = solution(tmp_path, sector(around(0, 0), around(1, 1), around(2, 2))).modes
+    assert [result.diameter for result in three] == [0, 1, 2]
+    for a, b in zip(one, three):
+        np.testing.assert_allclose(a.eigenvalues, b.eigenvalues, rtol=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("*MATERIAL", "*EQUATION\n2\nLAST, 1, 1., 9, 1, -1.\n*MATERIAL", "stands in an equation, too"),
+        ("NMIN=1, NMAX=1", "NMIN=3, NMAX=9", "FREQUENCY"),
+    ],
+)
+def test_diameters_that_cannot_be_are_refused(tmp_path: Path, old: str, new: str, said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        solution(tmp_path, sector(around(1, 1)).replace(old, new, 1))
 
 
 def test_a_lower_limit_is_told(tmp_path: Path) -> None:

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from abut.bodies.stress_stiffness import stress_stiffness
-from abut.errors import InputError
+from abut.errors import InputError, nearest
 from abut.model import Buckling, Frequencies, Model
 from abut.modes.buckling import buckling
 from abut.modes.complex_frequencies import complex_frequencies
+from abut.modes.cyclic import cyclic_frequencies, sides
 from abut.modes.frequencies import frequencies
 from abut.modes.held import Held, held
 from abut.modes.sliding import sliding
 from abut.nonlinear.attempt import Attempt
 from abut.problem.assembly import Assembled
+from abut.problem.problem import ContactProblem
 from abut.solution import ModesResult
 from abut.solution.state import State
 from abut.types import Sparse
@@ -25,6 +28,11 @@ def check_modes(model: Model, team: bool) -> None:
         return
     if team:
         raise InputError("modes: frequencies and buckling loads are found on one process without PETSc (solve.linear)")
+    for wanted in model.modes:
+        if isinstance(wanted, Frequencies) and wanted.side and wanted.side not in model.mesh.node_sets:
+            raise InputError(
+                f"frequencies: side: no node set named '{wanted.side}'{nearest(wanted.side, model.mesh.node_sets)}"
+            )
     if model.physics:
         raise InputError("modes: frequencies and buckling loads are those of displacements alone; leave physics out")
     if model.finite and any(isinstance(wanted, Buckling) for wanted in model.modes):
@@ -47,10 +55,15 @@ def modes(assembled: Assembled, before: State, attempt: Attempt) -> tuple[ModesR
     there = held(own, system, state)
     stressed = _stressed(assembled, state) if problem.model.small_strains else None
 
-    def one(wanted: Frequencies | Buckling) -> ModesResult:
+    def found(wanted: Frequencies | Buckling) -> tuple[ModesResult, ...]:
         if isinstance(wanted, Buckling):
             assert stressed is not None  # as checked at the outset
-            return buckling(problem.model, near, there, stressed, wanted)
+            return (buckling(problem.model, near, there, stressed, wanted),)
+        around = tuple(diameter for diameter in wanted.diameters if diameter)
+        alike = (one(wanted),) if len(around) < len(wanted.diameters) else ()
+        return alike + (_around(own, before, state, stressed, wanted, around) if around else ())
+
+    def one(wanted: Frequencies) -> ModesResult:
         tight = there
         if stressed is not None and wanted.stiffening:
             tight = _stiffened(there, near.reduce(stressed))
@@ -58,7 +71,21 @@ def modes(assembled: Assembled, before: State, attempt: Attempt) -> tuple[ModesR
             return complex_frequencies(problem.model, near, tight, sliding(system, state, there), wanted)
         return frequencies(problem.model, near, tight, wanted)
 
-    return tuple(map(one, problem.model.modes))
+    return tuple(result for wanted in problem.model.modes for result in found(wanted))
+
+
+def _around(
+    problem: ContactProblem, before: State, state: State, stressed: Sparse | None, wanted: Frequencies,
+    diameters: Sequence[int],
+) -> tuple[ModesResult, ...]:  # fmt: skip
+    """Frequencies with nodal diameters."""
+    apart = sides(problem.model, problem.constraints, wanted.side)
+    wide = apart.problem(problem)
+    there = apart.state(state)
+    tight = held(wide, wide.again(apart.state(before), there), there)
+    if stressed is not None and wanted.stiffening:
+        tight = _stiffened(tight, apart.constraints.reduce(stressed))
+    return cyclic_frequencies(problem.model, apart, tight, wanted, diameters)
 
 
 def _stiffened(there: Held, by_stress: Sparse) -> Held:

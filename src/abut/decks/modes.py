@@ -4,17 +4,38 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from abut.decks.large import is_finite
+from abut.io.deck.groups import Groups
 from abut.io.deck.record import Block, Deck
+from abut.io.deck.sectors import turned_side
 from abut.model import Buckling, Frequencies
 
 
-def modes(deck: Deck) -> tuple[Frequencies | Buckling, ...]:
-    """Of its last step."""
+def modes(deck: Deck, groups: Groups) -> tuple[Frequencies | Buckling, ...]:
+    """Of the steps that ask for them. Raises InputError for sectors of which no nodal diameters but 0 are found."""
     if deck.modes is None:
         return ()
     if deck.modes.kind == "BUCKLE":
         return (Buckling(deck.modes.count),)
-    return (Frequencies(deck.modes.count, stiffening=deck.modes.loaded),)
+    wanted = Frequencies(deck.modes.count, stiffening=deck.modes.loaded)
+    if not any(deck.modes.diameters):
+        return (wanted,)
+    side = groups.node_set(turned_side(deck, groups), "sector-side")
+    return (replace(wanted, diameters=deck.modes.diameters, sectors=deck.cyclic[0].sectors, side=side),)
+
+
+def loading_notes(deck: Deck) -> list[str]:
+    """What CalculiX adds to the stiffness about a loaded state, and abut does not."""
+    if deck.modes is None or not deck.modes.loaded:
+        return []
+    kinds = {"centrifugal"} if is_finite(deck) else {"centrifugal", "pressure"}
+    acting = sorted({value.kind for step in deck.steps for value in step.values} & kinds)
+    words = {"centrifugal": "centrifugal forces (they grow with the distance)", "pressure": "pressures (they turn)"}
+    return [
+        f"{deck.steps[-1].place}: *FREQUENCY: {words[kind]} are taken as what they are in the loaded state, CalculiX lets "
+        "them follow the vibration"
+        for kind in acting
+    ]
 
 
 def with_stiff_beams(deck: Deck) -> Deck:

@@ -21,7 +21,7 @@ from abut.decks.friction import friction_options, path_notes
 from abut.decks.holds import holds
 from abut.decks.large import finite_notes, is_finite, load_steps, plastic_steps, unsupported, yields
 from abut.decks.metal import metal_law
-from abut.decks.modes import modes, with_stiff_beams
+from abut.decks.modes import loading_notes, modes, with_stiff_beams
 from abut.decks.nodal import equations, forces, supports
 from abut.decks.output import output_options, tables, with_tables
 from abut.decks.overclosure import overclosure_notes, own_laws, softened
@@ -47,9 +47,11 @@ from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
 from abut.mesh.read import build
 from abut.model import (
+    Buckling,
     Contact,
     Coupling,
     Equation,
+    Frequencies,
     Hold,
     Load,
     Model,
@@ -100,7 +102,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
         reasons.add(error)
     plane, deck = plane_of(deck), with_stiff_beams(deck)
     notes = [f"{block.code}: {block.type.instead}" for block in deck.blocks if block.type.instead]
-    notes += element_notes(deck)
+    notes += [*element_notes(deck), *loading_notes(deck)]
     deck = cut(expanded(deck, is_finite(deck)))
     notes = [*deck.notes, *notes, *overclosure_notes(deck, soft), *finite_notes(deck), *spring_notes(deck)]
     made = pieces(deck)
@@ -119,7 +121,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     notes += [*_idle(deck, groups), *unlisted_notes(deck), *beside_notes(deck)]
     references = dict(zip([*moving, *(coupling.name for coupling in bound)], reference_nodes(deck)))
     prescribed = _prescribed(deck, groups, parts, plane, references, notes, reasons)
-    asked = tables(deck, groups, notes)
+    asked, vibrations = tables(deck, groups, notes), _vibrations(deck, groups, reasons)
     reasons.tell()
     mesh = build(Mesh, groups.raw(), deck.path)
     notes += mesh.notes
@@ -146,11 +148,18 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
         **vars(prescribed),
         plane=plane,
         kinematics="finite" if finite else "small",
-        modes=modes(deck),
+        modes=vibrations,
         solve=replace(_steps(deck, finite), end=period(deck)),
     )
     model, output = with_tables(model, deck, asked, notes), output_options(model, deck, notes)
     return Translation(model, tuple(notes), deck.ignored, laws, output)
+
+
+def _vibrations(deck: Deck, groups: Groups, reasons: Reasons) -> tuple[Frequencies | Buckling, ...]:
+    result: tuple[Frequencies | Buckling, ...] = ()
+    with reasons.gathered():
+        result = modes(deck, groups)
+    return result
 
 
 def _check_something_is_there(deck: Deck) -> None:

@@ -101,7 +101,7 @@ def job_table(model: Model, mesh: str, output: Output = EVERYTHING) -> Json:
                 f"a job file holds one table [{name}], and the model asks for {len(wanted)}; keep one of them"
             )
         if wanted:
-            table[name] = _plain(wanted[0])
+            table[name] = {"count": wanted[0].count, **_plain(wanted[0])}  # a table without keys would not be written
     options = _plain(model.solve)
     if options:
         table["solve"] = options

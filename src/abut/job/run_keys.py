@@ -7,6 +7,11 @@ RUN: dict[str, dict[str, str]] = {
         "count": "how many, from the lowest",
         "stiffening": "whether stresses at the end of the last step change the stiffness; under finite kinematics always",
         "complex": "whether friction of what slips follows the pressure: frequencies with rates of growth (squeal)",
+        "diameters": "nodal diameters of a whole of alike sectors, of each of which count frequencies are found: from 0 to "
+        "half the sectors; others than 0 come twice each",
+        "sectors": "how many sectors like the modelled one make up the whole turn, where there are other diameters than 0",
+        "side": "the node set on one side of the sector whose equations join it to the other side, turned by one sector; "
+        "all equations between it and other nodes are taken as such",
     },
     "BucklingTable": {"count": "how many positive factors, from the smallest"},
     "SolveOptionsTable": {

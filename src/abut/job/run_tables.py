@@ -13,7 +13,7 @@ from abut.model.solve_options import LINEAR, SolveOptions
 from abut.model.step_choice import WORDS as STEPS
 from abut.output.options import COMPRESSIONS, FAST, FIELDS, FORMATS, USUAL, VTU
 
-FREQUENCIES = table_of(Frequencies)
+FREQUENCIES = table_of(Frequencies, {"diameters": list[int]})
 BUCKLING = table_of(Buckling)
 SOLVE = table_of(
     SolveOptions,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from abut.errors import InputError
@@ -26,6 +27,15 @@ class Frequencies:
     complex : bool
         Whether friction of what slips follows the pressure as it vibrates: complex frequencies, of which some may grow
         (squeal).
+    diameters : sequence of int
+        Nodal diameters, of each of which ``count`` frequencies are found: from 0 to half the number of sectors. Others than
+        0 are vibrations in which each sector of a whole of alike sectors is a phase of 2 pi diameter / sectors behind the
+        one before.
+    sectors : float
+        How many sectors like the modelled one make up the whole turn, where there are nodal diameters other than 0.
+    side : str
+        The node set on one side of the sector whose equations say that it moves as the other side does, turned by one
+        sector. Every equation between these nodes and others is taken to be one of those.
 
     Raises
     ------
@@ -42,12 +52,36 @@ class Frequencies:
     count: int = 10
     stiffening: bool = True
     complex: bool = False
+    diameters: Sequence[int] = (0,)
+    sectors: float = 0.0
+    side: str = ""
 
     def __post_init__(self) -> None:
         _check_count(self.count, "frequencies")
         for name, value in (("stiffening", self.stiffening), ("complex", self.complex)):
             if not isinstance(value, bool):
                 raise InputError(f"frequencies: {name}: expected true or false, got {value!r}")
+        object.__setattr__(self, "diameters", tuple(self.diameters))
+        if self.cyclic or self.sectors or self.side:
+            self._check_cyclic()
+
+    @property
+    def cyclic(self) -> bool:
+        """Whether there are nodal diameters other than 0."""
+        return any(self.diameters)
+
+    def _check_cyclic(self) -> None:
+        if not (self.sectors > 1.0 and self.side):
+            raise InputError("frequencies: nodal diameters need sectors (a number > 1) and side (a node set)")
+        for diameter in self.diameters:
+            if isinstance(diameter, bool) or not isinstance(diameter, int) or not 0 <= diameter <= self.sectors / 2.0:
+                raise InputError(
+                    f"frequencies: diameters: expected whole numbers from 0 to {self.sectors / 2.0:g}, got {diameter!r}"
+                )
+        if self.complex:
+            raise InputError(
+                "frequencies: complex frequencies are those of nodal diameter 0; leave complex or diameters out"
+            )
 
 
 @dataclass(frozen=True)

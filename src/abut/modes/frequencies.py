@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
@@ -28,27 +30,48 @@ def frequencies(model: Model, constraints: Constraints, held: Held, wanted: Freq
 
     Raises InputError where no body has a density, ConvergenceError, and SingularModelError."""
     whole = mass(model.mesh, densities(model))
-    reduced = constraints.reduce(whole)
+    found = lowest(held, constraints.reduce(whole), wanted.count)
+    shapes = np.asarray(constraints.free @ found.vectors)
+    factors, total = _participation(model, whole, shapes)
+    return ModesResult(
+        FREQUENCIES, found.values, found.squares, shapes.T.reshape(len(found.squares), -1, model.dim), factors,
+        factors**2, total, found.residual, found.orthogonality, found.missing,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Lowest:
+    """squares: (n,) of angular frequencies, ascending; vectors: (n_free, n) of modal mass 1; residual, orthogonality,
+    missing: as in ``ModesResult``."""
+
+    squares: Vector
+    vectors: Vector
+    residual: float
+    orthogonality: float
+    missing: int | None
+
+    @property
+    def values(self) -> Vector:
+        """(n,) in cycles per time, negative where the square is."""
+        return np.asarray(np.sign(self.squares) * np.sqrt(np.abs(self.squares)) / (2.0 * np.pi))
+
+
+def lowest(held: Held, reduced: Sparse, count: int) -> Lowest:
+    """The lowest ``count`` modes; reduced: (n_free, n_free) mass. Raises ConvergenceError and SingularModelError."""
     highest = fastest(held.stiffness, reduced)
     shift = -SHIFT * highest if held.loose else 0.0
     shifted = Factors((held.stiffness - shift * reduced).tocsr() if shift else held.stiffness, held)
     moving = int((reduced.diagonal() > 0.0).sum())
     pencil = Pencil(shifted.solve, reduced, reduced, reduced.shape[0], min(moving, reduced.shape[0] - len(held.give)))
     rounding = ROUNDING * highest
-    found, missing = _complete(pencil, held, shift, wanted.count, rounding)
+    found, missing = _complete(pencil, held, shift, count, rounding)
     squares, vectors = shift + 1.0 / found.values, found.vectors
     squares = np.where(np.abs(squares) <= rounding, 0.0, squares)
     mass_of = reduced @ vectors
     again = np.column_stack([shifted.solve(force) for force in mass_of.T]) / found.values - vectors
     residual = relative_energy(shifted.matrix, again, vectors)
     products = vectors.T @ mass_of - np.eye(len(squares))
-    shapes = np.asarray(constraints.free @ vectors)
-    factors, total = _participation(model, whole, shapes)
-    return ModesResult(
-        FREQUENCIES, np.sign(squares) * np.sqrt(np.abs(squares)) / (2.0 * np.pi), squares,
-        shapes.T.reshape(len(squares), -1, model.dim), factors, factors**2, total, float(residual.max()),
-        float(np.abs(products).max()), missing,
-    )  # fmt: skip
+    return Lowest(squares, vectors, float(residual.max()), float(np.abs(products).max()), missing)
 
 
 def relative_energy(stiffness: Sparse, change: Vector, vectors: Vector) -> Vector:

@@ -17,6 +17,7 @@ from abut.solution.modes import COMPLEX
 from abut.types import Json
 
 TABLE, SHAPES = "modes.csv", "modes.vtu"
+DIAMETER = "nodal_diameter"
 SINGULAR = {"frequencies": "frequency", "complex frequencies": "complex_frequency", "buckling": "buckling"}
 
 
@@ -62,6 +63,8 @@ def _one(result: ModesResult) -> Json:
             "participation": result.participation.tolist(), "effective_mass": result.effective.tolist(),
             "mass": result.mass.tolist(),
         }  # fmt: skip
+    if result.diameter:
+        found["diameter"] = result.diameter
     if result.kind == COMPLEX:
         found |= {
             "orthogonality": None,
@@ -77,6 +80,8 @@ def _table(solution: Solution) -> str:
     head = ["kind", "mode", "value", "eigenvalue"]
     if any(len(result.mass) for result in solution.modes):
         head += [f"{name}_{a}" for name in ("participation", "effective_mass") for a in along]
+    if any(result.diameter for result in solution.modes):
+        head.insert(1, DIAMETER)
     if any(result.kind == COMPLEX for result in solution.modes):
         head += ["growth_rate", "unstable"]
     text = io.StringIO()
@@ -90,6 +95,7 @@ def _table(solution: Solution) -> str:
                 "value": value,
                 "eigenvalue": result.eigenvalues[i],
             }
+            row |= {DIAMETER: result.diameter} if DIAMETER in head else {}
             for name, values in (("participation", result.participation), ("effective_mass", result.effective)):
                 row |= {f"{name}_{a}": number for a, number in zip(along, values[i].tolist())}
             if result.kind == COMPLEX:
@@ -101,12 +107,15 @@ def _table(solution: Solution) -> str:
 def _shapes(solution: Solution) -> dict[str, NDArray[np.float64]]:
     arrays = {}
     for number, result in enumerate(solution.modes):
-        again = sum(earlier.kind == result.kind for earlier in solution.modes[:number])
+        again = sum(
+            (earlier.kind, earlier.diameter) == (result.kind, result.diameter) for earlier in solution.modes[:number]
+        )
+        around = f"_diameter_{result.diameter}" if result.diameter else ""
         for i, shape in enumerate(result.shapes):
-            name = f"{SINGULAR[result.kind]}{f'_{again + 1}' if again else ''}_{i + 1:04d}"
+            name = f"{SINGULAR[result.kind]}{around}{f'_{again + 1}' if again else ''}_{i + 1:04d}"
             largest = max(float(np.abs(shape).max(initial=0.0)), 1e-300)
             arrays[name] = _spatial(shape / largest)
-            if result.kind == COMPLEX:  # the motion a quarter of a period before
+            if len(result.imaginary):  # the motion a quarter of a period before
                 arrays[f"{name}_imaginary"] = _spatial(result.imaginary[i] / largest)
     return arrays
 

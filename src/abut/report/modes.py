@@ -21,7 +21,7 @@ def mode_lines(result: ModesResult) -> list[str]:
     if result.kind == COMPLEX:
         return _complex_lines(result)
     shown = [f"{value:.6g}" for value in result.values[:MOST]]
-    head = f"{result.kind} {'(cycles per time)' if result.kind == FREQUENCIES else '(factors)'}:"
+    head = f"{result.words} {'(cycles per time)' if result.kind == FREQUENCIES else '(factors)'}:"
     rows = [", ".join(shown[i : i + PER_LINE]) for i in range(0, len(shown), PER_LINE)]
     more = [f"and {len(result) - MOST} more, in modes.csv"] if len(result) > MOST else []
     return [f"{head} {rows[0]}", *(f"  {row}" for row in (*rows[1:], *more))]
@@ -66,6 +66,10 @@ def _table(solution: Solution, result: ModesResult) -> tuple[list[str], list[lis
     if result.kind != FREQUENCIES:
         rows = [[f"{i + 1}", f"{value:.6g}"] for i, value in enumerate(result.values[:MOST])]
         return ["mode", "factor of the state's stresses"], rows, "Linear buckling about the end of the last step"
+    if result.diameter:
+        rows = [[f"{i + 1}", f"{value:.6g}"] for i, value in enumerate(result.values[:MOST])]
+        title = f"Natural frequencies with nodal diameter {result.diameter} about the end of the last step"
+        return ["mode", "frequency (cycles per time)"], rows, title
     along = "y" if solution.model.mesh.axisymmetric else "xyz"[: solution.model.dim]
     share = 100.0 * result.effective[:, : len(along)] / np.maximum(result.mass[: len(along)], 1e-300)
     rows = [

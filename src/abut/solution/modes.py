@@ -34,6 +34,10 @@ class ModesResult:
     where a mode is unstable; eigenvalues: the real parts; shapes: real parts, with ``imaginary`` (n, n_points, dim) the
     others, so that x^H M x = 1 and the largest component is real; slips: whether anything slips, without which there is
     nothing to make them complex; no participation; orthogonality: NaN, as they are not orthogonal. Else none of these.
+
+    diameter: nodal diameters of vibrations of a whole of alike sectors; from 1 on each frequency comes twice, shapes are
+    real parts of the modelled sector's and ``imaginary`` the others, in the next sector by an angle of 2 pi diameter over
+    the number of sectors later; no participation.
     """
 
     kind: str
@@ -49,11 +53,17 @@ class ModesResult:
     growth: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
     imaginary: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0, 0)))
     slips: bool = False
+    diameter: int = 0
 
     __repr__ = brief
 
     def __len__(self) -> int:
         return len(self.values)
+
+    @property
+    def words(self) -> str:
+        """What these are, with the nodal diameter where there is one."""
+        return f"{self.kind} of nodal diameter {self.diameter}" if self.diameter else self.kind
 
     @property
     def unstable(self) -> NDArray[np.bool_]:
@@ -70,17 +80,17 @@ class ModesResult:
         )
         if self.kind == COMPLEX:
             return (
-                Check("", f"{self.kind}: residual", self.residual, RESIDUAL,
+                Check("", f"{self.words}: residual", self.residual, RESIDUAL,
                       "root of the energy that one more inverse iteration changes a mode by, over the mode's"),
-                Check("", f"{self.kind}: missing modes", float("nan"), MISSING, "modes below the last that are not given",
+                Check("", f"{self.words}: missing modes", float("nan"), MISSING, "modes below the last that are not given",
                       unknown="no count tells how many complex modes there are"),
             )  # fmt: skip
         return (
-            Check("", f"{self.kind}: residual", self.residual, RESIDUAL,
+            Check("", f"{self.words}: residual", self.residual, RESIDUAL,
                   "root of the energy that one more inverse iteration changes a mode by, over the mode's"),
-            Check("", f"{self.kind}: orthogonality", self.orthogonality, ORTHOGONAL,
+            Check("", f"{self.words}: orthogonality", self.orthogonality, ORTHOGONAL,
                   "largest product of two modes of size 1"),
-            Check("", f"{self.kind}: missing modes", float("nan") if left else float(self.missing or 0), MISSING,
+            Check("", f"{self.words}: missing modes", float("nan") if left else float(self.missing or 0), MISSING,
                   "modes below the last one that a count by Sylvester's law of inertia finds beyond those given",
                   unknown=left),
         )  # fmt: skip

@@ -192,8 +192,9 @@ def read_cards(path: Path, opens: Opens, reasons: Reasons) -> tuple[Card, ...]:
         if pending:
             head = (*_parse("".join(pending).rstrip(","), begun), begun)
             pending.clear()
-        if head is None:
+        if head is None and not text[0].isalpha() and text[0] != ">":
             raise DeckError(place, "a data line before the first card; decks begin with a card such as *NODE")
+        head = head or ("HEADING", "text before the first card", {}, place)  # which CalculiX passes over
         data.append(Line(_fields(text), place, head[1]))
     close()
     if not cards and not reasons.found:

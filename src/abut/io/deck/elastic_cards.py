@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from abut.io.deck.cards import Card, Line, as_float, key
 from abut.io.deck.record import Elastic, Expansion, Orientation, Rows
@@ -17,6 +18,7 @@ TYPES = {  # of *ELASTIC: the kind, and how many numbers it has
 ENTRY = {0: 0, 1: 1, 2: 2, 3: 3, 4: 4, 5: 5, 6: 9, 7: 14, 8: 20}  # of the nine of ORTHO among the 21
 ORTHO = ("ORTHO", "ORTHOTROPIC")
 PER_LINE = 8
+Vector = NDArray[np.float64]
 
 
 def elastic(card: Card) -> Elastic:
@@ -87,17 +89,35 @@ def orientation(card: Card) -> Orientation:
         raise card.error(f"DEFINITION={definition} is not supported; give the coordinates of two points")
     line = card.first("two points")
     x = [line.number(i, "coordinate", 0.0) for i in range(9)]
-    if any(x[6:]):
-        raise line.error("a third point (an origin of its own) is not read; give a and b from the origin")
-    for turn in card.lines[1:]:
-        if turn.number(1, "angle", 0.0) != 0.0:
-            raise turn.error("a turn about one of the axes is not read; turn the points a and b instead")
-    a, b = (x[0], x[1], x[2]), (x[3], x[4], x[5])
-    across = np.linalg.norm(np.cross(a, b)) if system == "RECTANGULAR" else np.linalg.norm(np.subtract(a, b))
+    a, b = np.array(x[:3]), np.array(x[3:6])
+    if system == "RECTANGULAR":
+        a, b = _turned(card, a - x[6:], b - x[6:])
+    elif any(turn.number(1, "angle", 0.0) for turn in card.lines[1:]):
+        raise card.lines[1].error("a turn of cylindrical axes is not read; give constants along radius, turn and axis")
+    across = np.linalg.norm(np.cross(a, b)) if system == "RECTANGULAR" else np.linalg.norm(a - b)
     if not across > 0.0:
         raise line.error(
             "a and b lie on one line with the origin: they give no axes"
             if system == "RECTANGULAR"
             else "the two points are the same"
         )
-    return Orientation(system.lower(), a, b, card.place)
+    return Orientation(system.lower(), _point(a), _point(b), card.place)
+
+
+def _turned(card: Card, a: Vector, b: Vector) -> tuple[Vector, Vector]:
+    """Vectors along x' and near y', turned about one of the axes by the degrees of the second line, where there is one."""
+    if len(card.lines) < 2 or not (angle := card.lines[1].number(1, "angle", 0.0)):
+        return a, b
+    number = card.lines[1].integer(0, "axis", 1)
+    if number not in (1, 2, 3):
+        raise card.lines[1].error(f"axis: expected 1, 2 or 3, got {number}")
+    x, z = (v / max(float(np.linalg.norm(v)), 1e-300) for v in (a, np.cross(a, b)))
+    y, (c, s) = np.cross(z, x), (np.cos(np.radians(angle)), np.sin(np.radians(angle)))
+    if number == 1:
+        return x, c * y + s * z
+    return (c * x - s * z, y) if number == 2 else (c * x + s * y, c * y - s * x)
+
+
+def _point(vector: Vector) -> tuple[float, float, float]:
+    x, y, z = vector.tolist()
+    return x, y, z

@@ -1,11 +1,11 @@
-"""*FREQUENCY and *BUCKLE in the last step of a deck: what they ask for, and the static steps that are left."""
+"""*FREQUENCY and *BUCKLE of a deck: what they ask for, and the static steps that are left."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from abut.io.deck.cards import Card, key
+from abut.io.deck.cards import Card, as_float, key
 
 PROCEDURES = ("FREQUENCY", "BUCKLE")
 CHANGES = (
@@ -20,46 +20,90 @@ CHANGES = (
 )
 
 
+# What makes the state after static steps another one than that of the unloaded model, but for stresses
+NOT_LINEAR = ("CONTACTPAIR", "CONTACT", "PLASTIC", "HYPERELASTIC", "MODELCHANGE")
+
+
 @dataclass(frozen=True)
 class Modes:
-    """What the last step asks for. kind: "FREQUENCY" or "BUCKLE"; count: how many; loaded: about the state after the steps
-    before, stresses included; note: what is done otherwise than the deck says, empty for nothing."""
+    """What steps ask for beside statics. kind: "FREQUENCY" or "BUCKLE"; count: how many; loaded: about the state after the
+    steps before, stresses included; note: what is done otherwise than the deck says, empty for nothing; diameters: nodal
+    ones, of each of which there are ``count``."""
 
     kind: str
     count: int
     loaded: bool
     note: str = ""
+    diameters: tuple[int, ...] = (0,)
 
 
 def without_modes(cards: Sequence[Card], ignore: Collection[str] = ()) -> tuple[tuple[Card, ...], Modes | None]:
-    """The cards without what asks for modes, and that; all of them and None where abut finds none such: but in the last
-    step, below a limit of frequencies, with loads that a state of its own would need, of cyclic symmetry with nodal
-    diameters from above 0 on; or ``ignore`` names the card.
+    """The cards without what asks for modes, and that; all of them and None where abut finds none such: below a limit of
+    frequencies, with loads that a state of its own would need; or ``ignore`` names the card.
 
-    As the only step it becomes a static one: unloaded for frequencies, with its loads for buckling. *FREQUENCY after static
-    steps needs PERTURBATION, as the state is otherwise not that of these steps."""
+    As the only step, or in several of nodal diameters, it becomes a static one: unloaded for frequencies, with its loads for
+    buckling. *FREQUENCY after static steps is about their state with PERTURBATION; without, about the unloaded model, which
+    has the same stiffness where nothing but stresses changes (``NOT_LINEAR``, and no NLGEOM)."""
     starts = [i for i, card in enumerate(cards) if card.key == "STEP"]
     if not starts:
         return tuple(cards), None
-    before, step = list(cards[: starts[-1]]), list(cards[starts[-1] :])
+    before, steps = list(cards[: starts[0]]), [list(cards[i:j]) for i, j in zip(starts, [*starts[1:], len(cards)])]
+    asking = [step for step in steps if any(card.key in PROCEDURES for card in step)]
+    wanted = [_wanted(step, before) for step in asking]
+    left_out = {key(name.lstrip("*")) for name in ignore}
+    first = next((found for found in wanted if found is not None), None)
+    if first is None or any(found is None or found.kind in left_out for found in wanted):
+        return tuple(cards), None
+    if len({(found.kind, found.count, found.note) for found in wanted if found is not None}) > 1:
+        return tuple(cards), None
+    modes = replace(first, diameters=tuple(dict.fromkeys(d for found in wanted if found for d in found.diameters)))
+    perturbed = [step[0].has("PERTURBATION") for step in asking]
+    changed = {card.key for step in asking for card in step} & set(CHANGES)
+    if len(steps) == len(asking) and not any(perturbed):
+        if (len(steps) == 1 and (modes.kind == "BUCKLE" or changed <= {"BOUNDARY"})) or not changed:
+            return (*before, *map(_as_static, steps[0])), modes
+    elif len(asking) == 1 and modes.kind == "FREQUENCY" and not changed:
+        where = steps.index(asking[0])
+        others = [card for step in steps if step is not asking[0] for card in step]
+        if perturbed[0] and where == len(steps) - 1:
+            return (*before, *others), replace(modes, loaded=True)
+        after = {card.key for step in steps[where + 1 :] for card in step}
+        every = (*before, *others)
+        linear = not any(card.key in NOT_LINEAR or card.has("NLGEOM") or card.has("NONLINEAR") for card in every)
+        if not perturbed[0] and linear and not after & {"BOUNDARY"}:
+            return every, modes
+    return tuple(cards), None
+
+
+def _as_static(card: Card) -> Card:
+    return Card("STATIC", "*STATIC", {}, (), card.place) if card.key in PROCEDURES else card
+
+
+def _wanted(step: Sequence[Card], before: Sequence[Card]) -> Modes | None:
+    """What a step asks for; None where abut does not find it."""
     asking = [card for card in step if card.key in PROCEDURES]
     count = _count(asking[0]) if len(asking) == 1 else None
-    left_out = {key(name.lstrip("*")) for name in ignore}
-    if count is None or asking[0].key in left_out:
-        return tuple(cards), None
-    card, perturbed = asking[0], step[0].has("PERTURBATION")
-    changed = {other.key for other in step} & set(CHANGES)
-    cyclic = any(other.key == "CYCLICSYMMETRYMODEL" for other in before)
-    if cyclic and card.key == "FREQUENCY" and _lowest_diameter(step):
-        return tuple(cards), None
-    if len(starts) == 1 and not perturbed and (card.key == "BUCKLE" or changed <= {"BOUNDARY"}):
-        static = Card("STATIC", "*STATIC", {}, (), card.place)
-        return (*before, *(static if other is card else other for other in step)), Modes(
-            card.key, count, False, _note(card, cyclic)
-        )
-    if len(starts) > 1 and perturbed and card.key == "FREQUENCY" and not changed:
-        return tuple(before), Modes(card.key, count, True, _note(card, cyclic))
-    return tuple(cards), None
+    if count is None:
+        return None
+    chosen = [card for card in step if card.key == "SELECTCYCLICSYMMETRYMODES"]
+    models = [card for card in before if card.key == "CYCLICSYMMETRYMODEL"]
+    if not models or asking[0].key != "FREQUENCY" or not chosen:
+        return Modes(asking[0].key, count, False, _note(asking[0], bool(models)))
+    diameters = _diameters(chosen[-1], models)
+    return None if diameters is None else Modes("FREQUENCY", count, False, _note(asking[0], False), diameters)
+
+
+def _diameters(card: Card, models: Sequence[Card]) -> tuple[int, ...] | None:
+    """From NMIN, 0 where it is left out, to NMAX, or as many as there are; None for what are none."""
+    sectors = {as_float(model.get("N") or "") for model in models}
+    size = sectors.pop()
+    if sectors or size is None:
+        return None
+    texts = [card.get("NMIN") or "0", card.get("NMAX") or str(int(size / 2.0))]
+    if not all(text.strip().isdecimal() for text in texts):
+        return None
+    lowest, highest = map(int, texts)
+    return tuple(range(lowest, highest + 1)) if lowest <= highest <= size / 2.0 else None
 
 
 def _note(card: Card, cyclic: bool) -> str:
@@ -69,12 +113,6 @@ def _note(card: Card, cyclic: bool) -> str:
     if cyclic:
         told.append("modes alike in all sectors (nodal diameter 0) are given, none that differ between sectors")
     return f"{card.place}: {'; '.join(told)}" if told else ""
-
-
-def _lowest_diameter(step: Sequence[Card]) -> int:
-    """Lowest nodal diameter that is asked for, 0 where nothing says."""
-    texts = [card.get("NMIN") or "0" for card in step if card.key == "SELECTCYCLICSYMMETRYMODES"]
-    return max((int(text) if text.strip().isdecimal() else 0 for text in texts), default=0)
 
 
 def _count(card: Card) -> int | None:

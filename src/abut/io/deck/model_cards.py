@@ -262,6 +262,7 @@ def _direction(line: Line, i: int) -> int:
 
 
 def rigid_bodies(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[RigidBody, ...]:
+    """*RIGID BODY; the reference node is 0 where none is named."""
     result = []
     for card in of(cards, "RIGID BODY"):
         with reasons.gathered():
@@ -272,7 +273,7 @@ def rigid_bodies(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tu
                 elements = _named(card, "ELSET", mesh.element_sets.sets, "element")
             else:
                 raise card.error("give the body's nodes (NSET) or elements (ELSET)")
-            reference = one_node(card, "REF NODE", mesh)
+            reference = one_node(card, "REF NODE", mesh) if card.has("REF NODE") else 0
             turning = one_node(card, "ROT NODE", mesh) if card.has("ROT NODE") else 0
             result.append(RigidBody(nodes, elements, reference, turning, card.place))
     return tuple(result)

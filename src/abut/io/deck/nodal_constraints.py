@@ -8,20 +8,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
-from abut.io.deck.faces import connectivity
 from abut.io.deck.groups import Groups
 from abut.io.deck.passing_supports import Stay, check_passing, passing
 from abut.io.deck.reasons import DeckError, Place
 from abut.io.deck.record import CyclicSymmetry, Deck, Numbers, Transform
+from abut.io.deck.sectors import partners
 from abut.io.deck.thin_nodes import means, spread, straight, turns
 from abut.io.deck.time_histories import Course, combine, courses, zero
 
 Vector = NDArray[np.float64]
 NOTHING: Course = ((0.0, 0.0),)
 TINY = 1e-12  # of the largest coefficient: a term that is none
-NEAR = 1e-3  # of the surface: distance within which nodes on two sides of a sector count as the same
 
 Point = tuple[int, int]  # node, axis 0..2
 NO_DRILL = "has a moment about the normal of its shell, which nothing resists"
@@ -250,42 +248,14 @@ def _global(terms: tuple[tuple[int, int, float], ...], local: Mapping[int, Vecto
 
 def _cyclic(deck: Deck, groups: Groups, symmetry: CyclicSymmetry) -> list[Bond]:
     """The displacement of every slave node is that of its master node, turned by one sector."""
-    nodes = {}
-    for side in (symmetry.slave, symmetry.master):
-        surface = deck.surfaces[side]
-        side_nodes = surface.nodes
-        if side_nodes is None:
-            side_nodes = np.concatenate([n.ravel() for n in connectivity(deck, groups.rows(side)).values()])
-        nodes[side] = np.intersect1d(side_nodes, groups.used)
-    a, axis = np.array(symmetry.a), np.array(symmetry.b) - np.array(symmetry.a)
-    x, y = (coordinates(deck, nodes[side]) for side in (symmetry.slave, symmetry.master))
-    size = float(np.ptp(np.concatenate([x, y]), axis=0).max())
-    tried = [_turn(axis, sign * 2.0 * np.pi / symmetry.sectors) for sign in (1.0, -1.0)]
-    found = [tuple(map(np.asarray, cKDTree((y - a) @ turn.T).query(x - a))) for turn in tried]
-    best = int(found[1][0].max() < found[0][0].max())
-    (distance, match), turn = found[best], _clean(tried[best])
-    if distance.max() > NEAR * size or len(set(match.tolist())) < len(match):
-        worst = int(nodes[symmetry.slave][int(distance.argmax())])
-        raise DeckError(
-            symmetry.place,
-            f"*CYCLIC SYMMETRY MODEL: node {worst} of '{symmetry.slave}' has no partner on "
-            f"'{symmetry.master}' one sector on; mesh both sides alike",
-        )
-    result = []
-    for slave, master in zip(nodes[symmetry.slave].tolist(), nodes[symmetry.master][match].tolist()):
+    result, found = [], partners(deck, groups, symmetry)
+    for slave, master in zip(found.slaves.tolist(), found.masters.tolist()):
         for k in range(3):
             terms = {(slave, k): 1.0}
             for j in range(3):
-                terms[master, j] = terms.get((master, j), 0.0) - float(turn[k, j])
+                terms[master, j] = terms.get((master, j), 0.0) - float(found.turn[k, j])
             result.append(Bond(terms, NOTHING, symmetry.place))
     return result
-
-
-def _turn(axis: Vector, angle: float) -> Vector:
-    """Rotation matrix (Rodrigues)."""
-    e = axis / np.linalg.norm(axis)
-    cross = np.array([[0.0, -e[2], e[1]], [e[2], 0.0, -e[0]], [-e[1], e[0], 0.0]])
-    return np.asarray(np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross)
 
 
 def _without_virtual(

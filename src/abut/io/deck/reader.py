@@ -26,6 +26,7 @@ from abut.io.deck.multipoint_cards import multipoint_notes
 from abut.io.deck.output_cards import requests
 from abut.io.deck.reasons import DeckError, Reasons
 from abut.io.deck.record import Amplitude, Deck, Prescribed
+from abut.io.deck.references import with_references
 from abut.io.deck.removed_elements import removed, without
 from abut.io.deck.repeated import repeated_members, without_repeated
 from abut.io.deck.shell_cards import nodal_thickness, normals
@@ -92,7 +93,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
     )
     gone = removed(groups, mesh, reasons)
     reasons.tell()
-    return without(deck, gone)
+    return with_references(without(deck, gone))
 
 
 def read_mesh_only(path: Path) -> Deck:

@@ -211,7 +211,7 @@ class Equation:
 @dataclass(frozen=True)
 class RigidBody:
     """nodes, or elements, of the body; reference and turning node (turning node 0: turns are directions 4..6 of the
-    reference node)."""
+    reference node; reference node 0: none is named, which ``references.with_references`` makes up for)."""
 
     nodes: Numbers
     elements: Numbers

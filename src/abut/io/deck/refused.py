@@ -18,8 +18,8 @@ PROCEDURES = {  # other than *STATIC: what each is, and what to do; ignoring one
     "ELECTROMAGNETICS": ("electromagnetics", "give its forces by *CLOAD, its temperatures by *TEMPERATURE"),
     "FEASIBLE DIRECTION": ("optimisation", _DESIGN),
     "FREQUENCY": (
-        "eigenfrequencies but as the only step, or in the last one with *STEP, PERTURBATION (of the loaded state), "
-        "without loads, upper limit and STORAGE=YES, of cyclic symmetry with the nodal diameter 0",
+        "eigenfrequencies but as the only step, in the last one with *STEP, PERTURBATION (of the loaded state), or beside "
+        "static steps without NLGEOM and contact, and then without loads, upper limit and STORAGE=YES",
         "write the step so, in a deck of its own",
     ),
     "GREEN": ("Green functions", "use *STATIC with each unit force"),
