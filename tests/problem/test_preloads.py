@@ -158,7 +158,7 @@ def test_a_section_that_supports_hold_open_is_refused():
 def test_a_model_without_the_preload_of_its_cut_mesh_is_refused():
     """Its mesh is open there, and nothing would hold both sides together."""
     model = bar(abut.Preload("bolt", "bar", force=3.0))
-    with pytest.raises(InputError, match="cut open at the section of 'bolt'.*shortening = 0"):
+    with pytest.raises(InputError, match=r"cut open at the section of 'bolt'.*shortening = 0"):
         replace(model, preloads=[])
     closed = replace(model, preloads=[replace(model.preloads[0], force=None, shortening=0.0)])
     assert abut.solve(closed).steps[-1].preloads["bolt"].tension == pytest.approx(0.0, abs=1e-12)

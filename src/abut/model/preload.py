@@ -166,9 +166,9 @@ def _check_open(mesh: Mesh, names: Collection[str]) -> None:
         apart = len(before) != len(beyond) or np.isin(before, beyond).any()
         if not apart and len(before) and (mesh.points[before] == mesh.points[beyond]).all():
             raise InputError(
-                f"preloads: the mesh is cut open at the section of '{name}', and no preload has that name: nothing would hold "
-                "both sides together. Give the mesh that the model was made of (that of a model is cut), or keep the preload: "
-                "with shortening = 0 the section stays closed"
+                f"preloads: the mesh is cut open at the section of '{name}', and no preload has that name: nothing would "
+                "hold both sides together. Give the mesh that the model was made of (that of a model is cut), or keep the "
+                "preload: with shortening = 0 the section stays closed"
             )
 
 
