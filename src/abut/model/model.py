@@ -105,12 +105,12 @@ class Model:
         Points that move with a reference.
     preloads : sequence of Preload
         Bolts that are tightened; the mesh is cut open at their sections.
-    springs, holds, penetrations, removals : sequences of Spring, of Hold, of Penetration and of Removal
-        Springs to ground, between points, beds; supports that come or go; fluids that enter contacts; bodies that go.
+    springs, holds, penetrations : sequences of Spring, of Hold and of Penetration
+        Springs to ground, between points, beds; supports that come or go; fluids that enter contacts.
     physics : sequence of abut.model.physics.Physics
         Fields beside displacements, with terms of their own in the balance; on one process, with the direct solver.
-    modes : sequence of Frequencies and Buckling
-        What is found about the state at the end of the last step; on one process.
+    modes, removals : sequences of Frequencies and Buckling, of Removal
+        What is found about the state at the end of the last step, on one process; bodies that go, and may come back.
 
     Raises
     ------
