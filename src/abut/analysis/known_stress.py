@@ -148,7 +148,7 @@ def _add_load(model: Model, skin: _Skin, load: Load, factor: float) -> None:
     elif isinstance(load, Force):
         traction = np.broadcast_to(factor * np.array(load.value) / full_moments(surface, 0).sum(), x.shape)
     else:
-        given = load.value(where) if callable(load.value) else np.broadcast_to(load.value, where.shape)
+        given = load.along(where) if callable(load.along) else np.broadcast_to(load.along, where.shape)
         traction = factor * np.asarray(given, dtype=float).reshape(x.shape)
     skin.traction[at] += traction * shrunk[..., None]
 

@@ -48,14 +48,16 @@ def table_of(
 ) -> type[Table]:
     """The table of a record (a dataclass): a key for each of its fields, those that must be given first.
 
-    others: types of keys that say more than the fields'; meaning: of the table; kind: what its key ``kind`` says, if it has
-    one."""
+    others: types of keys that say more than the fields', or that the record has no field for; meaning: of the table; kind:
+    what its key ``kind`` says, if it has one."""
     hints, known = get_type_hints(record), others or {}
     keys: dict[str, Any] = {"kind": (Literal[kind], ...)} if kind else {}
     for each in sorted(fields(record), key=lambda own: own.default is not MISSING):
         default = list(each.default) if isinstance(each.default, tuple) else each.default
         as_key = known[each.name] if each.name in known else TYPES[hints[each.name]]
         keys[each.name] = as_key, ... if each.default is MISSING else default
+    for name in known.keys() - keys.keys():
+        keys[name] = known[name], None
     made: type[Table] = create_model(f"{record.__name__}Table", __base__=Table, __doc__=meaning, **keys)
     return made
 

@@ -215,6 +215,7 @@ MEANINGS: dict[str, dict[str, str]] = {
     "TractionTable": {
         "kind": "traction on a surface",
         "value": "vector, a number or an expression for each axis [force/length^2]",
+        "axes": "local axes, along whose directions the components are, at each undeformed point",
     },
     "ForceTable": {
         "kind": "total force, spread evenly over a surface, or at the reference of a rigid body or coupling",
@@ -242,6 +243,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "amplitude": "of the force: the square of that of the speed",
     },
     "MidForceTable": {
+        "axes": "local axes, along whose directions the components are, at each undeformed point",
         "kind": "the same force at each node of a set",
         "on": "name of the node set or surface",
         "value": "vector at each node; plane models: per unit thickness, axisymmetric: of the full circumference [force]",

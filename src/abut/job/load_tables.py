@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from abut.job.derived import one_of, table_of
+from abut.job.material_tables import AxesTable
 from abut.job.table import Varying
 from abut.model import Centrifugal, Force, Gravity, Moment, NodalForce, Pressure, Temperature, Traction
 from abut.thin.records import MidForce
@@ -16,7 +17,8 @@ LOADS: Mapping[str, type] = {
 }  # fmt: skip
 SAID: Mapping[type, Mapping[str, Any]] = {  # types of keys that say more than the record's
     Pressure: {"value": Varying},
-    Traction: {"value": list[Varying]},
+    Traction: {"value": list[Varying], "axes": AxesTable | None},
+    MidForce: {"axes": AxesTable | None},
     Temperature: {"value": Varying},
 }
 MEANING: Mapping[type, str] = {

@@ -99,6 +99,10 @@ def _support(table: SupportTable, where: str) -> MidSupport:
 def _force(table: BaseModel, where: str) -> MidForce:
     given = values(table, where)
     given.pop("kind")
+    if given.pop("axes") is not None:
+        raise InputError(
+            f"{where}.axes: '{given['on']}' is a group of nodes of shells and beams; give global components"
+        )
     return MidForce(**given)
 
 

@@ -7,6 +7,7 @@ from collections.abc import Collection, Sequence
 import numpy as np
 
 from abut import checks
+from abut.axes import Axes
 from abut.errors import InputError
 from abut.mesh.mesh import Mesh
 from abut.model.body_forces import BodyForce, Centrifugal, Gravity, Load
@@ -34,12 +35,17 @@ def check_supports(mesh: Mesh, supports: Sequence[Support]) -> None:
             checks.known(support.on, [*mesh.surfaces, *mesh.node_sets], f"supports[{i}].on", "surface or node set")
         else:
             checks.known(support.on, mesh.surfaces, f"supports[{i}].on", "surface (normal needs facets)")
-        if support.axes is not None:
-            support.axes.check(mesh.dim, f"supports[{i}]")
-            if mesh.axisymmetric and support.axes.kind != "rectangular":
-                raise InputError(f"supports[{i}].axes: the model is axisymmetric: x is radial already; leave axes out")
+        _check_axes(mesh, support.axes, f"supports[{i}]")
         if mesh.dim == 2 and support.z is not None:
             raise InputError(f"supports[{i}].z: the model is 2D; leave z out")
+
+
+def _check_axes(mesh: Mesh, axes: Axes | None, where: str) -> None:
+    if axes is None:
+        return
+    axes.check(mesh.dim, where)
+    if mesh.axisymmetric and axes.kind != "rectangular":
+        raise InputError(f"{where}.axes: the model is axisymmetric: x is radial already; leave axes out")
 
 
 def check_loads(mesh: Mesh, loads: Sequence[Load], rigid: Collection[str], couplings: Collection[str]) -> None:
@@ -70,6 +76,7 @@ def check_loads(mesh: Mesh, loads: Sequence[Load], rigid: Collection[str], coupl
                 )
         else:
             _check_place(mesh, load, f"loads[{i}].on")
+            _check_axes(mesh, getattr(load, "axes", None), f"loads[{i}]")
             if isinstance(load, Temperature) and load.on in rigid and load.on not in mesh.node_sets:
                 raise InputError(f"loads[{i}].on: '{load.on}' is rigid and does not expand; take the temperature out")
         if isinstance(load, (Pressure, Temperature)) or callable(load.value):

@@ -7,11 +7,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from abut import checks
+from abut.axes import Axes
 from abut.errors import InputError
 from abut.expression import Expression, Expressions
-from abut.fields import Field, number_or_field
+from abut.fields import Field, evaluate, number_or_field
 from abut.model.conditions import History, check_amplitude, vector
 
 
@@ -77,6 +79,8 @@ class Traction:
         Force per area: numbers and expressions of position, or a function, points (n, dim) -> (n, dim).
     amplitude : Amplitude, optional
         Factor over time; the ramp where left out.
+    axes : Axes, optional
+        Local axes at undeformed points, along which the components are; the global ones where left out.
 
     Raises
     ------
@@ -87,11 +91,25 @@ class Traction:
     on: str
     value: tuple[float | str, ...] | Field
     amplitude: History = None
+    axes: Axes | None = None
 
     def __post_init__(self) -> None:
         if not callable(self.value):
             object.__setattr__(self, "value", _components(self.value, f"traction on '{self.on}': value"))
         check_amplitude(self.amplitude, f"traction on '{self.on}'")
+        if self.axes is not None:
+            checks.instance(self.axes, Axes, f"traction on '{self.on}': axes", "axes (abut.Axes)")
+
+    @property
+    def along(self) -> tuple[float | str, ...] | Field:
+        """The value along the global axes."""
+        return self.value if self.axes is None else self._turned
+
+    def _turned(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        assert self.axes is not None
+        shape = points.shape[1:]
+        local = evaluate(self.value, points, f"traction on '{self.on}': value", shape)
+        return np.asarray(np.einsum("nki,nk->ni", self.axes.frames(points), local))
 
 
 @dataclass(frozen=True)
@@ -187,6 +205,8 @@ class NodalForce:
         Force at each (2D: per unit thickness; axisymmetric: of the full circumference).
     amplitude : Amplitude, optional
         Factor over time; the ramp where left out.
+    axes : Axes, optional
+        Local axes at undeformed points, along which the components are; the global ones where left out.
 
     Raises
     ------
@@ -197,10 +217,19 @@ class NodalForce:
     on: str
     value: tuple[float, ...]
     amplitude: History = None
+    axes: Axes | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "value", vector(self.value, f"nodal force on '{self.on}': value"))
         check_amplitude(self.amplitude, f"nodal force on '{self.on}'")
+        if self.axes is not None:
+            checks.instance(self.axes, Axes, f"nodal force on '{self.on}': axes", "axes (abut.Axes)")
+
+    def at(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The forces (n, dim) at points (n, dim), along the global axes."""
+        if self.axes is None:
+            return np.broadcast_to(np.array(self.value), points.shape)
+        return np.asarray(np.einsum("nki,k->ni", self.axes.frames(points), np.array(self.value)))
 
 
 @dataclass(frozen=True)

@@ -134,7 +134,7 @@ def _forces(model: Model, load: Load) -> NDArray[np.float64]:
     if isinstance(load, Pressure):
         return pressure_load(mesh.surface(load.on), load.value, f"pressure on '{load.on}': value")
     if isinstance(load, Traction):
-        return traction_load(mesh.surface(load.on), load.value, f"traction on '{load.on}': value")
+        return traction_load(mesh.surface(load.on), load.along, f"traction on '{load.on}': value")
     if isinstance(load, Force) and load.bearing:
         bore, where = mesh.surface(load.on), f"loads[{model.loads.index(load)}].bearing"
         return bearing_load(bore, np.array(load.value), at_ends(model, bore), where)
@@ -142,7 +142,8 @@ def _forces(model: Model, load: Load) -> NDArray[np.float64]:
         return force_load(mesh.surface(load.on), np.array(load.value))
     if isinstance(load, NodalForce):
         force = np.zeros(mesh.points.shape)
-        force[mesh.nodes_of(load.on)] = load.value
+        nodes = mesh.nodes_of(load.on)
+        force[nodes] = load.at(mesh.points[nodes])
         return force.ravel()
     if isinstance(load, Gravity):
         weights = {s.body: s.material.density * np.array(load.value) for s in model.solids}
