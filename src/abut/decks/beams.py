@@ -93,7 +93,7 @@ def _solid(deck: Deck, blocks: list[Block]) -> Sections:
         np.array([section.axis for section in sections]),
         np.array([section.widths for section in sections]),
         np.array([section.offsets for section in sections]),
-        np.array([section.wall for section in sections]),
+        np.array([section.walls for section in sections]),
         sections[0].form,
     )
     try:

@@ -42,7 +42,7 @@ def with_thick_trusses(deck: Deck) -> Deck:
     rows = np.arange(own.size).reshape(own.shape)  # no bar shares a section with another
     try:
         solid = expand_beams(
-            points.reshape(-1, 3), Beam(rows, aside, widths, np.zeros_like(widths), np.zeros(len(rows)))
+            points.reshape(-1, 3), Beam(rows, aside, widths, np.zeros_like(widths), np.zeros((len(rows), 4)))
         )
     except ValueError as error:
         number = np.concatenate([block.ids for block in blocks])[error.args[0]]
