@@ -52,6 +52,15 @@ def test_cantilever(code: str, tmp_path: Path) -> None:
     assert end(solution)[0] == pytest.approx(wanted[0], rel=0.02)
 
 
+def test_in_the_plane(tmp_path: Path) -> None:
+    """B21, clamped in the plane alone: nothing holds it across or against spinning but that its nodes stay there."""
+    text = beam("B21").replace("1, 1, 6", "1, 1, 2\n1, 6, 6")
+    moved = end(solve(tmp_path, text + step("*CLOAD", "END, 2, 1.", "END, 6, 5.")))
+    bent = LENGTH**3 / 3 + 5.0 * LENGTH**2 / 2
+    assert moved[1] == pytest.approx(bent / (E * HIGH * WIDE**3 / 12), rel=0.01)
+    assert moved[2] == pytest.approx(0.0, abs=1e-6 * moved[1])
+
+
 @pytest.mark.parametrize(
     "given", [("*BOUNDARY", "END, 5, 5, 0.01"), ("*CLOAD", f"END, 5, {0.01 * E * WIDE * HIGH**3 / 12 / LENGTH}")]
 )

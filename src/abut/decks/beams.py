@@ -58,7 +58,7 @@ def with_thick_beams(deck: Deck, finite: bool) -> Deck:
 
 def _ordered(block: Block) -> Numbers:
     """Nodes (n, 3) at start, end and middle of each element; decks list the middle second where it is theirs."""
-    return block.nodes if block.code.startswith("B31") else block.nodes[:, [0, 2, 1]]
+    return block.nodes if block.code.startswith(("B31", "B21")) else block.nodes[:, [0, 2, 1]]
 
 
 def _sections(deck: Deck, block: Block) -> list[Section]:

@@ -81,7 +81,7 @@ def _spin(nodes: Numbers, arms: Vector, along: Vector, block: Block) -> Equation
 
 def _ordered(block: Block) -> Numbers:
     """Nodes (n, 3) at start, end and middle of each bar; decks list the middle second where it is theirs."""
-    return block.nodes if block.code == "T3D2" else block.nodes[:, [0, 2, 1]]
+    return block.nodes if block.code in ("T3D2", "T2D2") else block.nodes[:, [0, 2, 1]]
 
 
 def _check(deck: Deck, block: Block, own: Numbers) -> None:
