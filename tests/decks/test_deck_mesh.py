@@ -165,7 +165,7 @@ def test_names_that_stand_for_several_things(tmp_path):
         (BRICKS.replace("18, 0,1,2", "18, 0,l,2"), r":19: \*NODE: y: expected a number, got 'l'"),
         (BRICKS.replace("18, 0,1,2", "18, 0,nan,2"), r":19: \*NODE: y: expected a number, got 'nan'"),
         (BRICKS.replace("C3D8", "C3D4H"), r":20: \*ELEMENT: element type C3D4H: .*not supported"),
-        (BRICKS.replace("C3D8", "T2D2"), "T2D2: trusses are not supported; model the part with solid"),
+        (BRICKS.replace("C3D8", "T2D3"), "T2D3: trusses are not supported; model the part with solid"),
         (BRICKS + "*NSET, NSET=A\nBOTOM\n", r":27: \*NSET: no node set named 'BOTOM'; known: ALL"),
         (BRICKS + "*SURFACE, NAME=A\nLOW, S7\n", r":27: \*SURFACE: face label 'S7': expected S1 to S6"),
         (BRICKS + "*SURFACE, NAME=A, TYPE=CYLINDER\n1,1\n", "TYPE=CYLINDER"),

@@ -293,7 +293,7 @@ def test_empty_surfaces_and_sets_are_faults_only_where_they_are_used(tmp_path):
         load(tmp_path, text.replace("BOTTOM, 1, 3", "NONE, 1, 3"))
 
 
-@pytest.mark.parametrize("card", ["*ELEMENT, TYPE=T2D2", "*VISCOELASTIC", "*AMPLITUDE, NAME=A", "*FANCY"])
+@pytest.mark.parametrize("card", ["*ELEMENT, TYPE=T2D3", "*VISCOELASTIC", "*AMPLITUDE, NAME=A", "*FANCY"])
 def test_files_of_cards_that_are_refused_are_not_opened(card, tmp_path):
     with pytest.raises(InputError) as caught:
         load(tmp_path, DECK.replace("*STEP", f"{card}, INPUT=none.inc\n*STEP"))

@@ -127,3 +127,26 @@ def test_as_calculix(card: str, tmp_path: Path) -> None:
     subprocess.run(["ccx", "-i", path.stem], cwd=tmp_path, check=True, capture_output=True)
     row = next(r for line in path.with_suffix(".dat").read_text().splitlines() if (r := line.split()) and r[0] == "2")
     assert at(tmp_path, solution, 2) == pytest.approx(np.array(row[1:4], dtype=float), rel=1e-5)
+
+
+def test_in_the_plane(tmp_path: Path) -> None:
+    """T2D2: two bars at right angles and one of 45 degrees; an ideal truss in the plane, without supports across it."""
+    places = {1: (0.0, 0.0), 2: (3.0, 3.0), 3: (0.0, 3.0), 4: (3.0, 0.0)}
+    nodes = "".join(f"{n}, {x}, {y}\n" for n, (x, y) in places.items())
+    text = "*NODE\n" + nodes + "*ELEMENT, TYPE=T2D2, ELSET=BARS\n1, 1, 2\n2, 3, 2\n3, 4, 2\n*NSET, NSET=FEET\n1, 3, 4\n"
+    text += "*NSET, NSET=TOP\n2\n*BOUNDARY\nFEET, 1, 2\n" + MATERIAL
+    text += step("*CLOAD", "2, 1, 1.", "2, 2, 3.", "*NODE PRINT, NSET=TOP", "U")
+    solution = solve(tmp_path, text)
+    stiffness = np.zeros((2, 2))
+    for other in (1, 3, 4):
+        along = np.array(places[2]) - places[other]
+        stiffness += E * AREA / np.linalg.norm(along) ** 3 * np.outer(along, along)
+    moved = at(tmp_path, solution, 2)
+    assert moved[:2] == pytest.approx(np.linalg.solve(stiffness, (1.0, 3.0)), rel=1e-6)
+    assert moved[2] == pytest.approx(0.0, abs=1e-9 * np.abs(moved).max())
+    if CCX is None:
+        return
+    subprocess.run(["ccx", "-i", "deck"], cwd=tmp_path, check=True, capture_output=True)
+    row = (tmp_path / "deck.dat").read_text().split()[-4:]
+    assert row[0] == "2"
+    assert moved[:2] == pytest.approx([float(x) for x in row[1:3]], rel=1e-5)

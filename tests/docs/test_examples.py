@@ -14,6 +14,7 @@ from abut.job import load_job
 from abut.report.lines import pressure_lines
 from abut.report.origin import PROFILE, ellipse
 from abut.report.origin import quantities as known_quantities
+from models.beam_theory import belt_ratio, clip_force, leaf_forces
 
 FOLDER = Path(__file__).parents[2] / "examples"
 FILES = sorted([*FOLDER.rglob("*.toml"), *FOLDER.rglob("*.inp")])
@@ -28,6 +29,9 @@ LONG = {
     "accordion",
     "bolted-joint",
     "dented-plate",
+    "pipe-clip",
+    "belt",
+    "stiffened-panel",
 }
 
 
@@ -98,7 +102,54 @@ def check_deck(solution: abut.Solution) -> None:
     assert all(check.passed for check in solution.certificate)
 
 
+def check_leaf_spring(solution: abut.Solution) -> None:
+    """The forces between the leaves, of which the last facets are a tenth of the shortest one: 3 %."""
+    exact = leaf_forces([200.0, 160.0, 120.0, 80.0, 40.0], 210e3 * 20.0 * 4.0**3 / 12.0, 200.0)
+    forces = [float(contact.force[2]) for contact in solution.contacts]
+    assert forces == pytest.approx(exact, rel=0.03)
+    assert all(check.passed for check in solution.certificate)
+
+
+def check_pipe_clip(solution: abut.Solution) -> None:
+    """From where its flat arm lies on the pipe (x = 6 at the outset, a facet more for the force that moves on by facets) the
+    force across is that of a beam, within 3 %; along it Coulomb's, in the direction of the slope."""
+    lifted = [step for step in solution.steps if 14.0 * step.factor > 8.0]
+    for step in lifted:
+        exact = clip_force(14.0 * step.factor, 200e3 * 10.0 * 1.5**3 / 12.0, 1.5, 10.0, 1.0, 22.0, 0.2)
+        assert step.contacts[0].force[1] == pytest.approx(exact, rel=0.03)
+    assert len(lifted) > 2
+    assert all(check.passed for check in solution.certificate)
+
+
+def check_belt(solution: abut.Solution) -> None:
+    """All of the belt slips in the end; the forces at its ends are as theory says for its thickness (1 %)."""
+    contact = solution.contacts[0]
+    assert contact.friction is not None
+    assert contact.friction.sticking_area == 0.0
+    tight = float(contact.force[1]) - 100.0  # what both ends carry, less the slack one
+    assert tight / 100.0 == pytest.approx(belt_ratio(0.3, 50.0, 1.0, np.pi), rel=0.01)
+    assert all(check.passed for check in solution.certificate)
+
+
+def check_stiffened_panel(solution: abut.Solution) -> None:
+    """The bolts clamp with what they are tightened to; the load then bends panel and rib less than if they slid on each
+    other, and more than if they were one: 5 q L^4 / 384 E I."""
+    tight, *_, last = solution.steps
+    assert [abs(float(contact.force[2])) for contact in tight.contacts] == pytest.approx([16e3] * 3, rel=1e-6)
+    apart = (80.0 * 2.0**3 + 24.0 * 6.0**3) / 12.0
+    one = apart + 160.0 * 144.0 / (160.0 + 144.0) * 4.0**2
+    middle = np.linalg.norm(solution.model.mesh.points[:, :2] - [124.0, 0.0], axis=1) < 1e-6
+    bent = float((last.displacement - tight.displacement)[middle, 2].mean())
+    sliding, bonded = (5.0 * 0.01 * 80.0 * 240.0**4 / (384.0 * 70e3 * inertia) for inertia in (apart, one))
+    assert 1.05 * bonded < bent < 0.95 * sliding
+    assert all(check.passed for check in solution.certificate)
+
+
 MORE = {
+    "stiffened-panel": check_stiffened_panel,
+    "leaf-spring": check_leaf_spring,
+    "pipe-clip": check_pipe_clip,
+    "belt": check_belt,
     "twisted-hub": check_twisted_hub,
     "snap-joint": check_snap_joint,
     "deck": check_deck,

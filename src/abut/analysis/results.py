@@ -314,7 +314,9 @@ def _contacts(
     around = []
     loaded = loaded_points(model)
     others = covered_elsewhere(balance.pairs, end.pressures)
-    for pair, reference, elsewhere, support in zip(balance.pairs, references, others, end.supports):
+    for pair, pressed, reference, elsewhere, support in zip(
+        balance.pairs, end.pressures, references, others, end.supports
+    ):
         constant, varying = offsets(model, pair.contact)
         moved = end.nodal if support is None else np.zeros_like(end.nodal)
         overlap = overlaps(pair, moved, constant + float(varying @ balance.factors))
@@ -325,7 +327,7 @@ def _contacts(
         along = None if model.finite or pair.tied else slid(pair, end.nodal, held=gives == 0.0)
         sides = model.measured(pair.contact) if pair.contact in model.contacts and not pair.tied else None
         beside_it = Surroundings(reference, beside, overlap, free, elsewhere, support, cells, gives=gives, slid=along)
-        yielding = bends(model, pair, end.nodal, end.internal)
+        yielding = bends(model, pair, pressed, end.nodal, end.internal)
         around.append(replace(beside_it, sides=sides, bends=yielding))
     residual = attempt.iterations[-1].contact_residual
     found = zip(

@@ -8,39 +8,47 @@ from numpy.typing import NDArray
 from abut.mesh.record import MeshRecord
 from abut.model import Model
 from abut.problem.pair import Pair
+from abut.solution.mid_surface import columns
 
 SHARE = 0.1  # of it that surfaces may overlap: (L10) says why forces between them are then right to a twentieth
+LEAST = 0.05  # of half the sum of the forces on a part, below which a contact's own say what it is worth
 
 Array = NDArray[np.float64]
 
 
-def bends(model: Model, pair: Pair, displacement: Array, internal: Array) -> float | None:
-    """As ``thin_give`` of the bodies made of shells that a side of a pair is on; None where there are none.
+def bends(model: Model, pair: Pair, pressure: Array, displacement: Array, internal: Array) -> float | None:
+    """As ``thin_give`` of the bodies made of shells that a side of a pair is on; less where the pair has less than ``LEAST``
+    of their forces, as these say nothing of it then; None where there are none.
 
-    displacement: (n_points, dim); internal: (dim n_points,) nodal forces of stresses."""
+    pressure: (n,) of the pair; displacement: (n_points, dim); internal: (dim n_points,) nodal forces of stresses."""
     mesh = model.mesh
     sides = [side.node_ids for side in (pair.contactor, pair.target)]
     thin = [body for body in mesh.shells if any(np.isin(side, mesh.nodes_of(body)).mean() > 0.5 for side in sides)]
     if not thin:
         return None
-    return thin_give(mesh, thin, displacement, internal.reshape(-1, mesh.dim), not model.small_strains)
+    own = float(np.abs(pair.rows.T @ pressure).sum()) / 2.0
+    return thin_give(mesh, thin, displacement, internal.reshape(-1, mesh.dim), own, not model.small_strains)
 
 
-def thin_give(mesh: MeshRecord, bodies: list[str], displacement: Array, internal: Array, finite: bool) -> float:
+def thin_give(
+    mesh: MeshRecord, bodies: list[str], displacement: Array, internal: Array, own: float, finite: bool
+) -> float:
     """The least, over bodies, of how far the forces on a thin body move in the mean, a length: twice its elastic energy over
-    the sum of the sizes of the nodal forces of its stresses. 0 where there is none.
+    the sum of the sizes of its forces, those through the thickness together. 0 where there is none.
 
-    displacement, internal: (n_points, 3); what others that share nodes have of the forces there counts as well. finite:
-    whether turns may be large; else the forces, which balance, do no work on them."""
+    displacement, internal: (n_points, 3); what others that share nodes have of the forces there counts as well; own: size of
+    the forces that it is for. finite: whether turns may be large; else the forces, which balance, do no work on them."""
     found = []
     for body in bodies:
         nodes = mesh.nodes_of(body)
         forces, bent = internal[nodes], displacement[nodes]
         if finite:
             bent = _bent(mesh.points[nodes], bent)
-        size = float(np.linalg.norm(forces, axis=1).sum())
+        through = np.zeros_like(internal)
+        np.add.at(through, columns(mesh, body)[nodes], forces)
+        size = float(np.linalg.norm(through, axis=1).sum())
         if size > 0.0:
-            found.append(abs(float((forces * bent).sum())) / size)
+            found.append(abs(float((forces * bent).sum())) / size * min(1.0, 2.0 * own / (LEAST * size)))
     return min(found, default=0.0)
 
 

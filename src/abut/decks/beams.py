@@ -58,7 +58,7 @@ def with_thick_beams(deck: Deck, finite: bool) -> Deck:
 
 def _ordered(block: Block) -> Numbers:
     """Nodes (n, 3) at start, end and middle of each element; decks list the middle second where it is theirs."""
-    return block.nodes if block.code.startswith("B31") else block.nodes[:, [0, 2, 1]]
+    return block.nodes if block.code.startswith(("B31", "B21")) else block.nodes[:, [0, 2, 1]]
 
 
 def _sections(deck: Deck, block: Block) -> list[Section]:
@@ -93,7 +93,7 @@ def _solid(deck: Deck, blocks: list[Block]) -> Sections:
         np.array([section.axis for section in sections]),
         np.array([section.widths for section in sections]),
         np.array([section.offsets for section in sections]),
-        np.array([section.wall for section in sections]),
+        np.array([section.walls for section in sections]),
         sections[0].form,
     )
     try:

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from abut.decks.beams import with_thick_beams
+from abut.decks.in_plane import with_planes_held
 from abut.decks.shell_edges import quadratic
 from abut.decks.thin import with_thick_shells
 from abut.decks.trusses import with_thick_trusses
@@ -18,7 +19,7 @@ def expanded(deck: Deck, finite: bool) -> Deck:
     """The deck with solids in place of shells, beams and trusses. ``finite``: at large displacements.
 
     Raises InputError for what has no section or no size, and for what cannot be said of solids."""
-    made, middles, ends = quadratic(deck)
+    made, middles, ends = quadratic(with_planes_held(deck))
     return thickened(made, middles, ends, finite)
 
 

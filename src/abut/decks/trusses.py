@@ -42,7 +42,7 @@ def with_thick_trusses(deck: Deck) -> Deck:
     rows = np.arange(own.size).reshape(own.shape)  # no bar shares a section with another
     try:
         solid = expand_beams(
-            points.reshape(-1, 3), Beam(rows, aside, widths, np.zeros_like(widths), np.zeros(len(rows)))
+            points.reshape(-1, 3), Beam(rows, aside, widths, np.zeros_like(widths), np.zeros((len(rows), 4)))
         )
     except ValueError as error:
         number = np.concatenate([block.ids for block in blocks])[error.args[0]]
@@ -81,7 +81,7 @@ def _spin(nodes: Numbers, arms: Vector, along: Vector, block: Block) -> Equation
 
 def _ordered(block: Block) -> Numbers:
     """Nodes (n, 3) at start, end and middle of each bar; decks list the middle second where it is theirs."""
-    return block.nodes if block.code == "T3D2" else block.nodes[:, [0, 2, 1]]
+    return block.nodes if block.code in ("T3D2", "T2D2") else block.nodes[:, [0, 2, 1]]
 
 
 def _check(deck: Deck, block: Block, own: Numbers) -> None:

@@ -164,6 +164,16 @@ def _layers(mesh: MeshRecord, body: str) -> tuple[Numbers, dict[str, Numbers]]:
     return layers, {kind: part.reshape(each.shape[:2]) for kind, part, each in zip(kinds, split, rows)}
 
 
+def columns(mesh: MeshRecord, body: str) -> Numbers:
+    """Of each point of the mesh that which is below it, through the thickness of a shell; (n_points,)."""
+    result = np.arange(len(mesh.points))
+    for kind, nodes, _ in mesh.cells_of(body):
+        corners = THROUGH[kind][1]
+        below, above, below_edges, above_edges, between = np.split(nodes, np.cumsum([corners] * 4), axis=1)
+        result[above], result[between], result[above_edges] = below, below, below_edges
+    return result
+
+
 def _divergence(points: Vector, cells: dict[str, Numbers], tensor: Vector) -> Vector:
     """Of tensors (n, 3, 3) at the points (n, 3) of a surface, the vector (n, 3): in each cell at its nodes, then their
     mean."""

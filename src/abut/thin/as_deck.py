@@ -83,7 +83,7 @@ def _section(name: str, section: Thin, ids: Numbers) -> Section:
         axis=(x, y, z),
         offsets=(first, second),
         form=form,
-        wall=section.wall or 0.0,
+        walls=(section.wall or 0.0,) * 4,
     )
 
 

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from abut.io.deck.cards import Card, key
 
+ORDER = (2, 3, 0, 1)  # of the four walls on the card, which are those at the sides 1, 2, -1, -2
 
-def form_of(card: Card) -> tuple[str, tuple[float, float], float]:
-    """Form (``mesh.thin.beams.OUTLINES``), widths and wall, 0 of solid ones. CIRC has diameters, PIPE the radius outside.
+
+def form_of(card: Card) -> tuple[str, tuple[float, float], tuple[float, ...]]:
+    """Form (``mesh.thin.beams.OUTLINES``), widths, and walls at the sides -1, -2, 1, 2, 0 of solid ones. CIRC has diameters,
+    PIPE the radius outside, BOX its walls in the order ``ORDER``.
 
     Raises InputError for other forms and for sizes that are none."""
     kind = key(card.get("SECTION", "RECT") or "")[:4]  # CalculiX reads four letters
@@ -18,10 +21,10 @@ def form_of(card: Card) -> tuple[str, tuple[float, float], float]:
     line = card.first("widths")
     first = line.number(0, "radius" if kind == "PIPE" else "width")
     if kind == "PIPE":
-        form, widths, walls = "pipe", (2.0 * first, 2.0 * first), [line.number(1, "wall")]
+        form, widths, walls = "pipe", (2.0 * first, 2.0 * first), [line.number(1, "wall")] * 4
     elif kind == "BOX":
         form, widths = "box", (first, line.number(1, "second width"))
-        walls = [line.number(2 + i, "wall") for i in range(4)]
+        walls = [line.number(2 + i, "wall") for i in ORDER]
     else:
         form, widths, walls = (
             "ellipse" if kind == "CIRC" else "rectangle",
@@ -30,11 +33,8 @@ def form_of(card: Card) -> tuple[str, tuple[float, float], float]:
         )
     if not min(widths) > 0.0:
         raise line.error(f"width: expected a number > 0, got {min(widths):g}")
-    if len(set(walls)) > 1:
-        told = ", ".join(f"{wall:g}" for wall in walls)
-        raise line.error(
-            f"walls {told}: boxes with different walls are not supported; give four equal ones, or use shells"
-        )
-    if walls and not 0.0 < walls[0] < min(widths) / 2.0:
-        raise line.error(f"wall: expected a number > 0 and < {min(widths) / 2.0:g}, half the section, got {walls[0]:g}")
-    return form, widths, walls[0] if walls else 0.0
+    for width, pair in zip(widths, (walls[0::2], walls[1::2])):
+        for wall in pair:
+            if not 0.0 < wall < width / 2.0:
+                raise line.error(f"wall: expected a number > 0 and < {width / 2.0:g}, half the section, got {wall:g}")
+    return form, widths, tuple(walls) or (0.0,) * 4

@@ -105,10 +105,12 @@ def _beams() -> dict[str, ElementType]:
     integration hinges would leave modes without energy."""
     middle = "a node in its middle, expanded to C3D20R instead of {}; less stiff in bending"
     return {
+        "B21": ElementType("line2", None, "reduced", middle.format("C3D8I"), "beam"),
         "B31": ElementType("line2", None, "reduced", middle.format("C3D8I"), "beam"),
         "B31R": ElementType("line2", None, "reduced", middle.format("C3D8R"), "beam"),
         "B32": ElementType("line3", None, "full", "", "beam"),
         "B32R": ElementType("line3", None, "reduced", "", "beam"),
+        "T2D2": ElementType("line2", None, "full", "", "truss"),
         "T3D2": ElementType("line2", None, "full", "", "truss"),
         "T3D3": ElementType("line3", None, "full", "", "truss"),
     }

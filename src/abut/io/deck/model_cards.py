@@ -145,7 +145,7 @@ def _beam_section(
     card: Card, mesh: MeshCards, known: Mapping[str, Material] | None, axes: Mapping[str, Card]
 ) -> Section:
     """One *BEAM SECTION or *BEAM GENERAL SECTION. Raises InputError for what is no such section."""
-    form, widths, wall = form_of(card)
+    form, widths, walls = form_of(card)
     axis = (0.0, 0.0, -1.0)
     if len(card.lines) > 1 and any(card.lines[1].fields):
         x, y, z = (card.lines[1].number(i, "component of the first direction", 0.0) for i in range(3))
@@ -165,7 +165,7 @@ def _beam_section(
         axis=axis,
         offsets=(offsets[0], offsets[1]),
         form=form,
-        wall=wall,
+        walls=walls,
     )
 
 

@@ -114,7 +114,7 @@ class Section:
     one each; orientation: None for the global axes; offset: of a
     shell, its nodes from the mid-surface along the normal over the thickness. Of a beam: widths along the first
     direction, near ``axis``, and the second, its nodes from the centre over these, its form
-    (``mesh.thin.beams.OUTLINES``) and the wall of a hollow one."""
+    (``mesh.thin.beams.OUTLINES``) and the walls of a hollow one, at its sides -1, -2, 1, 2."""
 
     name: str
     elements: Numbers
@@ -127,7 +127,7 @@ class Section:
     axis: tuple[float, float, float] = (0.0, 0.0, -1.0)
     offsets: tuple[float, float] = (0.0, 0.0)
     form: str = "rectangle"
-    wall: float = 0.0
+    walls: tuple[float, ...] = (0.0,) * 4
 
 
 @dataclass(frozen=True)

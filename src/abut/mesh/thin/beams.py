@@ -44,9 +44,9 @@ _HEX20 = (  # (which node of the line, which point of its section)
 class Beam:
     """cells: (n, 3) rows of points: start, end, middle. Of each: axis (n, 3), near which the first direction n1 of the
     section lies; widths (n, 2) along n1 and n2 = tangent x n1 [length]; offsets (n, 2) of the nodes from the centre,
-    over these; walls (n,) of hollow ones [length]. form: a name in ``OUTLINES``. Every node of round ones lies on the circle
-    or ellipse, between the nodes there are parabolas: the area of an ellipse is 1.2 % smaller, its second moments are 2.3 %,
-    those of a pipe, of eight cells, 0.1 % and 0.2 %."""
+    over these; walls (n, 4) of hollow ones at the sides -n1, -n2, n1, n2 [length], of a pipe all alike. form: a name in
+    ``OUTLINES``. Every node of round ones lies on the circle or ellipse, between the nodes there are parabolas: the area of
+    an ellipse is 1.2 % smaller, its second moments are 2.3 %, those of a pipe, of eight cells, 0.1 % and 0.2 %."""
 
     cells: Numbers
     axis: Vector
@@ -85,7 +85,7 @@ def expand_beams(points: Vector, beam: Beam) -> Sections:
         raise ValueError(int(np.flatnonzero(short.any(axis=1))[0]))
     tangents, second = tangents / lengths[..., None], second / sizes[..., None]
     node = beam.cells.ravel()
-    each = [beam.widths, beam.offsets * beam.widths, beam.walls[:, None]]
+    each = [beam.widths, beam.offsets * beam.widths, beam.walls]
     own = np.repeat(np.concatenate(each, axis=1), 3, axis=0)
     section, first = _sections(node, tangents.reshape(-1, 3), second.reshape(-1, 3), own)
     count = len(first)
@@ -100,7 +100,9 @@ def expand_beams(points: Vector, beam: Beam) -> Sections:
     place, quads = OUTLINES[beam.form] * widths, np.arange(COUNT)[None]
     corners = place.shape[1] // 2
     if beam.form in HOLLOW:
-        outer, inner = _box(widths, walls) if beam.form == "box" else (place, place * (1.0 - 2.0 * walls / widths))
+        outer, inner = (
+            _box(widths, walls[:, 0]) if beam.form == "box" else (place, place * (1.0 - 2.0 * walls[..., :1] / widths))
+        )
         corners = outer.shape[1] // 2
         place, quads = _hollow(outer, inner), _ring(corners)
     shares = 1.0 / corners + place @ np.linalg.pinv(place[:, :corners])
@@ -111,19 +113,20 @@ def expand_beams(points: Vector, beam: Beam) -> Sections:
 
 
 def _box(widths: Vector, walls: Vector) -> tuple[Vector, Vector]:
-    """Outlines (s, 24, 2) outside and inside: three points a side, so that a short cell at each end of a wall lets it warp
-    towards the corner; with one cell a wall, torsion is as stiff as without warping."""
+    """Outlines (s, 24, 2) outside and inside of walls (s, 4): three points a side, so that a short cell at each end of a
+    wall lets it warp towards the corner; with one cell a wall, torsion is as stiff as without warping."""
     ways = np.roll(CORNERS, -1, axis=0) - CORNERS  # along the sides
-    inwards = walls[..., None] * np.stack([-ways[:, 1], ways[:, 0]], axis=1)[:, None]
+    inwards = walls[..., None] * np.stack([-ways[:, 1], ways[:, 0]], axis=1)
     start, end = CORNERS * widths, np.roll(CORNERS, -1, axis=0) * widths
-    free = ((end - start) * ways).sum(axis=2, keepdims=True) - 2.0 * walls
-    reach = (walls + np.minimum(walls, free / 3.0)) * ways
+    wall = np.maximum(np.roll(walls, 1, axis=1), np.roll(walls, -1, axis=1))[..., None]  # as at both ends, so that
+    free = ((end - start) * ways).sum(axis=2, keepdims=True) - 2.0 * wall  # the mean of the points is the centre
+    reach = (wall + np.minimum(wall, free / 3.0)) * ways
     outer = np.stack([start, start + reach, end - reach], axis=2)
-    inner = outer + inwards
-    inner[:, :, 0] = CORNERS * (widths - 2.0 * walls)
+    inner = outer + inwards[:, :, None]
+    inner[:, :, 0] += np.roll(inwards, 1, axis=1)
     corners = [points.reshape(len(widths), -1, 2) for points in (outer, inner)]
-    first, second = (np.concatenate([x, (x + np.roll(x, -1, axis=1)) / 2.0], axis=1) for x in corners)
-    return first, second
+    outside, inside = (np.concatenate([x, (x + np.roll(x, -1, axis=1)) / 2.0], axis=1) for x in corners)
+    return outside, inside
 
 
 def _hollow(outer: Vector, inner: Vector) -> Vector:

@@ -1,0 +1,70 @@
+"""What beam theory says of the examples with shells."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import quad
+from scipy.optimize import fsolve
+
+
+def leaf_forces(lengths: list[float], stiffness: float, load: float) -> NDArray[np.float64]:
+    """Forces between leaves clamped together, each touched by the next one's end, with a load at the end of the longest:
+    both bend by as much there. stiffness: E I of each."""
+
+    def moved(x: float, at: float) -> float:  # of a cantilever at x by a force of 1
+        near, far = min(x, at), max(x, at)
+        return near**2 * (3.0 * far - near) / (6.0 * stiffness)
+
+    count = len(lengths) - 1
+    matrix, right = np.zeros((count, count)), np.zeros(count)
+    for k, x in enumerate(lengths[1:]):
+        matrix[k, k] = 2.0 * moved(x, x)
+        if k == 0:
+            right[k] = load * moved(x, lengths[0])
+        else:
+            matrix[k, k - 1] = -moved(x, lengths[k])
+        if k < count - 1:
+            matrix[k, k + 1] = -moved(x, lengths[k + 2])
+    return np.asarray(np.linalg.solve(matrix, right))
+
+
+def clip_force(way: float, stiffness: float, thick: float, pipe: float, tight: float, arm: float, mu: float) -> float:
+    """Force across on the arm of half a U-shaped clip that has come by ``way`` over a rigid pipe of radius ``pipe``.
+
+    arm: where its bend begins at the outset; tight: by how much its lower face is nearer to the plane of symmetry than the
+    pipe's top. The arm touches where it is as steep as the pipe; with friction the force is turned by its angle.
+    Castigliano for lift and slope there, and for how far the bend's top is moved along by opening."""
+    radius = pipe - tight + 0.5 * thick
+
+    def misses(unknown: NDArray[np.float64]) -> list[float]:
+        force, slope, along = unknown
+        length = arm - way + along - pipe * np.sin(slope)
+        drag = force * np.tan(np.arctan(mu) + slope)
+
+        def in_arm(x: float) -> float:
+            return float(force * x - drag * thick / 2.0)
+
+        def in_bend(a: float) -> float:
+            return float(force * (length + radius * np.sin(a)) + drag * (radius - thick / 2.0 - radius * np.cos(a)))
+
+        def bent(lever_arm: object, lever_bend: object) -> float:
+            return (
+                quad(lambda x: in_arm(x) * lever_arm(x), 0.0, length)[0]  # type: ignore[operator]
+                + radius * quad(lambda a: in_bend(a) * lever_bend(a), 0.0, np.pi / 2.0)[0]  # type: ignore[operator]
+            ) / stiffness
+
+        lifted = bent(lambda x: x, lambda a: length + radius * np.sin(a))
+        turned = bent(lambda x: 1.0, lambda a: 1.0)
+        moved = bent(lambda x: 0.0, lambda a: radius * (1.0 - np.cos(a)))
+        return [lifted + radius - (thick / 2.0 + pipe) * np.cos(slope), turned - slope, moved - along]
+
+    return float(fsolve(misses, [100.0, 0.07, 0.0])[0])
+
+
+def belt_ratio(mu: float, radius: float, thick: float, angle: float) -> float:
+    """Euler and Eytelwein's ratio of the forces on a belt's ends, for its thickness: friction acts at the pulley's radius,
+    the forces at that of its middle; l + l^2 mu t / 2 r = mu R / r in place of mu."""
+    middle = radius + 0.5 * thick
+    shear, arm = 0.5 * mu * thick / middle, mu * radius / middle
+    return float(np.exp((np.sqrt(1.0 + 4.0 * shear * arm) - 1.0) / (2.0 * shear) * angle))
