@@ -2,6 +2,7 @@
 #pragma once
 #include "hyperelastic.hpp"
 #include "kinematics.hpp"
+#include "last_node.hpp"
 #include <cmath>
 
 namespace abut {
@@ -56,7 +57,7 @@ public:
       determinant = points[q].det;
       if (!(determinant > 0) || !std::isfinite(determinant))
         return false;
-      points[q].scale = cells.mean_dilatation ? std::pow(centre.det / points[q].det, 1.0 / SCALED) : 1;
+      points[q].scale = cells.mean_dilatation ? root(centre.det / points[q].det) : 1;
     }
     return true;
   }
@@ -103,13 +104,14 @@ public:
   // Whether the stiffness is where the tangent is.
   bool symmetric() const { return !cells.mean_dilatation; }
 
-  // Adds the stiffness (n, n, dim, dim) at point q, theory (D6), (D8); half: for nodes i <= k only.
+  // Adds the stiffness (n, n, dim, dim) at point q, theory (D6), (D8), of the nodes that ``complete`` does not add;
+  // half: for nodes i <= k only.
   void add_stiffness(std::size_t q, const Dense &tangent, const double *stress, bool half, double *block) {
     respond(q, tangent, stress);
-    for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t i = 0; i < added(); ++i) {
       double g[dim]; // local, so that it stays in registers
       std::copy_n(&gradient[(q * n + i) * dim], dim, g);
-      for (std::size_t k = half ? i : 0; k < n; ++k) {
+      for (std::size_t k = half ? i : 0; k < added(); ++k) {
         // They do not overlap, so that the compiler may take several components at a time.
         double *__restrict out = &block[(i * n + k) * dim * dim];
         const double *__restrict r = &response[k * RESPONSE];
@@ -120,6 +122,12 @@ public:
             out[c] += hoop[q * n + i] * r[dim * dim * dim + c];
       }
     }
+  }
+
+  // Adds what is left once all points are in: nodes whose equal displacement does not strain the cell.
+  void complete(bool half, double *block) const {
+    if (added() < n)
+      complete_last_node<dim>(n, half, block);
   }
 
   // Turns a stress at point q into that of Cauchy.
@@ -145,6 +153,11 @@ public:
 
 protected:
   static constexpr int SCALED = dim == 2 && !axisymmetric ? 2 : 3; // directions that F-bar scales
+
+  static double root(double value) { return SCALED == 2 ? std::sqrt(value) : std::cbrt(value); }
+
+  // Nodes, from the first on, whose stiffness is integrated.
+  std::size_t added() const { return axisymmetric ? n : n - 1; }
 
   // The deformation gradient at a point, its determinant and inverse, the strain, and the factor of F-bar.
   struct Deformed {
@@ -238,21 +251,30 @@ protected:
   };
 
   static void linearise(const Deformed &at, double w, const double *c, Moduli &result) {
-    double half[STRAINS][dim][dim] = {{{0}}}; // w times the second stress by the slope, [s][d][c]
+    constexpr int WIDE = 4;                        // rows of three and a zero are added two at a time
+    double half[STRAINS][dim][WIDE], f[dim][WIDE]; // w times the second stress by the slope, [s][d][c]; f transposed
+    for (int p = 0; p < dim; ++p)
+      for (int a = 0; a < WIDE; ++a)
+        f[p][a] = a < dim ? w * at.f[a][p] : 0;
     for (int s = 0; s < STRAINS; ++s)
       for (int d = 0; d < dim; ++d)
-        for (int a = 0; a < dim; ++a)
+        for (int a = 0; a < WIDE; ++a) {
+          double sum = 0;
           for (int p = 0; p < dim; ++p)
-            half[s][d][a] += w * c[s * STRAINS + AT[p][d]] * at.f[a][p];
+            sum += c[s * STRAINS + AT[p][d]] * f[p][a];
+          half[s][d][a] = sum;
+        }
     for (int d = 0; d < dim; ++d)
       for (int b = 0; b < dim; ++b)
-        for (int a = 0; a < dim; ++a)
-          for (int e = 0; e < dim; ++e) {
-            double sum = 0;
-            for (int p = 0; p < dim; ++p)
-              sum += at.f[a][p] * half[AT[p][b]][d][e];
-            result.plane[d][b][a][e] = sum;
+        for (int a = 0; a < dim; ++a) {
+          double row[WIDE];
+          for (int e = 0; e < WIDE; ++e) {
+            row[e] = at.f[a][0] * half[AT[0][b]][d][e];
+            for (int p = 1; p < dim; ++p)
+              row[e] += at.f[a][p] * half[AT[p][b]][d][e];
           }
+          std::copy_n(row, dim, result.plane[d][b][a]);
+        }
     if constexpr (axisymmetric) {
       const double out = at.f[2][2];
       for (int d = 0; d < dim; ++d)
@@ -278,7 +300,7 @@ protected:
           moduli.plane[d][b][a][a] += w * stress[AT[b][d]];
     if constexpr (axisymmetric)
       moduli.own += w * stress[2];
-    for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t k = 0; k < added(); ++k) {
       double g[dim];
       std::copy_n(&gradient[(q * n + k) * dim], dim, g);
       double *__restrict r = &response[k * RESPONSE];
@@ -322,7 +344,7 @@ protected:
         for (int p = 0; p < dim; ++p)
           first[b][a] += w * at.f[a][p] * by_scale[AT[p][b]];
     at.invert();
-    for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t k = 0; k < added(); ++k) {
       double own[dim], *r = &response[k * RESPONSE];
       push(at, &gradient[(q * n + k) * dim], axisymmetric ? hoop[q * n + k] : 0, own);
       for (int c = 0; c < dim; ++c)

@@ -30,7 +30,8 @@ class Wanted:
 @dataclass(frozen=True)
 class At:
     """Where to integrate: cells with a rule, constants (cells, m), plane_stress, displacement (n_points, dim) or None,
-    thermal strains (cells, n_nodes) or None, and history before, (cells q, h)."""
+    thermal strains (cells, n_nodes) or None, and history before, (cells q, h). change: (cells q,) how much warmer the points
+    became, of materials that take the temperature themselves."""
 
     cells: Cells
     constants: Array
@@ -38,6 +39,7 @@ class At:
     displacement: Array | None
     thermal: Array | None
     before: Array | None = None
+    change: Array | None = None
 
 
 class Kernel(Protocol):
