@@ -41,6 +41,7 @@ if TYPE_CHECKING:
         Preload,
         Pressure,
         Probe,
+        Removal,
         Rigid,
         Rotation,
         Solid,
@@ -87,9 +88,9 @@ __all__ = [
     "Contact", "ConvergenceError", "Coupling", "Equation", "Force", "FoundContact", "Frequencies", "Gravity", "Hencky",
     "Hold", "InputError", "Integration", "LinearElastic", "LoadFactor", "Mesh", "MidForce", "MidSupport", "MidSurface",
     "Model", "Moment", "MooneyRivlin", "NeoHooke", "NodalForce", "Ogden", "Orthotropic", "Output", "OverTemperature",
-    "Penetration", "Plastic", "Preload", "Pressure", "PressureOverclosure", "Probe", "Rigid", "Rotation", "Shell",
-    "SingularModelError", "Solid", "Solution", "SolveOptions", "Spring", "Stop", "Stopped", "Support", "Temperature",
-    "Term", "Thick", "Traction", "Yeoh", "add_stops", "add_surfaces", "check", "find_contacts", "from_meshio",
+    "Penetration", "Plastic", "Preload", "Pressure", "PressureOverclosure", "Probe", "Removal", "Rigid", "Rotation",
+    "Shell", "SingularModelError", "Solid", "Solution", "SolveOptions", "Spring", "Stop", "Stopped", "Support",
+    "Temperature", "Term", "Thick", "Traction", "Yeoh", "add_stops", "add_surfaces", "check", "find_contacts", "from_meshio",
     "load_factors", "mid_surface", "plot", "solve", "thicken", "to_pyvista", "write", "write_report",
 ]  # fmt: skip
 

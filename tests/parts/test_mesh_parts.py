@@ -229,7 +229,8 @@ def test_names_are_believed_where_they_fit() -> None:
     assert body_names(parts, [], [("pin 5", 3), ("lug", 4)]) == ("pin_5", "lug")
     for found in ([("pin", 4), ("lug", 3)], [("pin", 3), ("pin", 4)], [("pin", 3)], [("", 3), ("lug", 4)], []):
         assert body_names(parts, [], found) == ("part_1", "part_2")
-    assert cleaned("  Ä-b / c ") == "-b_c"
+    assert cleaned("  Ä-b / c ") == "Ä-b_c"
+    assert cleaned("Geha\u0308use №2 / 軸") == "Gehäuse_2_軸"  # a letter and its accent are one
 
 
 def test_names_in_step_files(tmp_path: Path) -> None:

@@ -153,3 +153,15 @@ def test_a_section_that_supports_hold_open_is_refused():
     sides = abut.Support("bar.front", z=0)
     with pytest.raises((InputError, abut.SingularModelError), match="hold both sides"):
         abut.solve(replace(model, supports=[*model.supports, sides]))
+
+
+def test_a_model_without_the_preload_of_its_cut_mesh_is_refused():
+    """Its mesh is open there, and nothing would hold both sides together."""
+    model = bar(abut.Preload("bolt", "bar", force=3.0))
+    with pytest.raises(InputError, match=r"cut open at the section of 'bolt'.*shortening = 0"):
+        replace(model, preloads=[])
+    closed = replace(model, preloads=[replace(model.preloads[0], force=None, shortening=0.0)])
+    assert abut.solve(closed).steps[-1].preloads["bolt"].tension == pytest.approx(0.0, abs=1e-12)
+    whole = bar(abut.Preload("bolt", "bar", force=3.0)).mesh
+    with pytest.raises(InputError, match="of 'bolt'"):
+        replace(model, preloads=[abut.Preload("nut", "bar", force=1.0)], mesh=whole)

@@ -64,6 +64,7 @@ VALID: dict[str, tuple[dict[str, Any], Callable[[Any], object]]] = {  # argument
     "Force": ({"on": "b.right", "value": (1.0, 0.0)}, within("loads")),
     "Gravity": ({"value": (1.0, 0.0)}, within("loads")),
     "Hold": ({"on": "b.right", "x": 0.0}, within("holds")),
+    "Removal": ({"body": "b", "until": 0.5}, within("removals")),
     "Hencky": ({"young": 1.0, "poisson": 0.3}, kept),
     "Integration": ({}, kept),
     "LinearElastic": ({"young": 1.0, "poisson": 0.3}, kept),

@@ -14,8 +14,9 @@ from abut.analysis.oscillation import CLOSED, WHOLE, oscillation
 from abut.analysis.peaks import Peaks, peaks_of
 from abut.analysis.pressure_error import pressure_error
 from abut.analysis.resolution import resolution
+from abut.analysis.thin_give import SHARE
 from abut.contact.contactor_choice import Side
-from abut.contact.geometry import full_moments, split_at_creases
+from abut.contact.geometry import facet_sizes, full_moments, split_at_creases
 from abut.contact.nodal_recovery import at_points
 from abut.contact.rim import rim
 from abut.model.contact import KINDS
@@ -55,7 +56,8 @@ class Surroundings:
     opposite now is no sign of wrong surfaces; else None; stress: as from ``normal_stress``; average: (n_points,) what the
     reported pressure was recovered from, theory (P10), by default it itself; gives: the target's share of what both sides
     give way, 0 where it is held; slid: (n_facets,) motion of each along the target, in facets, None where contact follows
-    it; sides: as the choice of the contactor sees them, None where it has no part in it."""
+    it; sides: as the choice of the contactor sees them, None where it has no part in it;
+    bends: how far a thin part gives way, a length, as from ``thin_give``, None where no side is one."""
 
     reference: float = 0.0
     beside: float = 0.0
@@ -68,6 +70,7 @@ class Surroundings:
     gives: float = 1.0
     slid: NDArray[np.float64] | None = None
     sides: tuple[Side, Side] | None = None
+    bends: float | None = None
 
 
 def certificate(
@@ -134,7 +137,9 @@ class _Case:
         matters = max(largest, LESSER * around.beside)
         areas = full_moments(pair.contactor, 0)[:, 0]
         pressed_in = max(pair.compliance * matters / np.pi, FLAT)
-        hidden = (np.zeros(len(areas)) if around.overlap is None else around.overlap) / pressed_in
+        hidden = (np.zeros(len(areas)) if around.overlap is None else around.overlap) / np.maximum(
+            pressed_in, SHARE * (around.bends or 0.0) / facet_sizes(pair.contactor)
+        )
         loaded = np.nanmax(np.abs(nodal) if pair.contact.kind == KINDS[2] else nodal, axis=1) > CLOSED * largest
         cover = pair.coupling.covered / areas
         pressing = pressed_in * np.pi / pair.compliance if pair.compliance > 0.0 else 0.0
@@ -160,7 +165,7 @@ def _gaps(case: _Case, penetration: float) -> Iterator[Check]:
         "penetration", penetration / pair.size, PENETRATION, "largest weighted penetration over the facet size"
     )
     yield case.check("overlap", case.hidden.max(initial=0.0), OVERLAP,
-        "largest penetration at a point, over what the largest pressure indents between nodes",
+        "largest penetration at a point, over what the largest pressure indents between nodes, or a thin part gives way",
         pressure=case.pressing)  # fmt: skip
     shifts = np.ones(pair.contactor.dim, dtype=bool) if free is None else free
     yield case.check("faceting", faceting(pair, case.nodal, CLOSED * case.largest, shifts) / case.matters, FACETING,
@@ -203,8 +208,7 @@ def _pressure(case: _Case) -> Iterator[Check]:
         pressure=matters)  # fmt: skip
     counts = largest > LESSER * case.around.beside
     facets = resolution(pair, average, support, largest)
-    yield case.check("resolution", facets if counts else 0.0, RESOLUTION,
-        "one over the number of facets from the edge of contact to its middle, at the end", last=True)  # fmt: skip
+    yield _resolved(case, facets if counts else 0.0)
     yield _of_largest(case, seen, counts)
     estimate = pressure_error(pair, pressure, support, largest, case.around.stress, seen.carried, average)
     off = estimate * largest / matters
@@ -216,6 +220,16 @@ def _pressure(case: _Case) -> Iterator[Check]:
     yield Check(pair.contact.name, "contactor's edges", edges, EDGES,
         "sine of the angle between the sides where an edge of the contactor presses, mean by force",
         unknown="the target has points without a normal" if np.isnan(edges) else "")  # fmt: skip
+
+
+def _resolved(case: _Case, facets: float) -> Check:
+    """Thin parts touch along lines: what they press there with is a force, which no facets show as a pressure."""
+    meaning = "one over the number of facets from the edge of contact to its middle, at the end"
+    if case.around.bends is None:
+        return case.check("resolution", facets, RESOLUTION, meaning, last=True)
+    return Check(case.pair.contact.name, "resolution", facets, 1.0,
+        f"{meaning}: where a thin part touches along a line forces are right, the largest pressure is unknown",
+        last=True, notice=RESOLUTION)  # fmt: skip
 
 
 def _of_largest(case: _Case, seen: Peaks, counts: bool) -> Check:

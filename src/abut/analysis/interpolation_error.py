@@ -51,7 +51,7 @@ def is_mended(problem: ContactProblem) -> bool:
     model, pairs = problem.model, problem.pairs
     if problem.kinematics is not None or not problem.constant or any(pair.frictional for pair in pairs):
         return False
-    if model.physics or model.penetrations or len(problem.springs):
+    if model.physics or model.penetrations or model.removals or len(problem.springs):
         return False
     return any(of_simplices(model.mesh, side).any() for pair in pairs for side in (pair.contactor, pair.target))
 

@@ -27,6 +27,8 @@ def assembled_bodies(
     know."""
     if team is not None and model.physics:
         raise InputError("physics: fields beside displacements are solved on one process; start one only")
+    if team is not None and model.removals:
+        raise InputError("removals: bodies that go and come are solved on one process; start one only")
     if team is None:
         observe(Phase("assembling the stiffness"))
         return serial(model)
@@ -42,7 +44,7 @@ def assembled_bodies(
 
 def solver_kind(problem: ContactProblem, team: Team | None) -> str:
     """ "direct" or "amg": what the user asked for, or what size and abilities of the solvers suggest. Raises InputError."""
-    if problem.model.physics:
+    if problem.model.physics or problem.model.removals:
         return "direct"
     if team is None:
         return choose(problem.model.solve.linear, problem)

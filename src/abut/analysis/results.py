@@ -24,6 +24,7 @@ from abut.analysis.penetrations import penetration_results
 from abut.analysis.preloads import preload_results
 from abut.analysis.stress_error import stress_error
 from abut.analysis.surface_stress import loaded_points, normal_stress
+from abut.analysis.thin_give import bends
 from abut.bodies.averages import averages
 from abut.bodies.recovery import at_points, recovered
 from abut.cells import MAX_FACET_NODES
@@ -322,11 +323,9 @@ def _contacts(
         gives = _gives(model, constraints, pair)
         along = None if model.finite or pair.tied else slid(pair, end.nodal, held=gives == 0.0)
         sides = model.measured(pair.contact) if pair.contact in model.contacts and not pair.tied else None
-        around.append(
-            Surroundings(
-                reference, beside, overlap, free, elsewhere, support, cells, gives=gives, slid=along, sides=sides
-            )
-        )
+        beside_it = Surroundings(reference, beside, overlap, free, elsewhere, support, cells, gives=gives, slid=along)
+        yielding = bends(model, pair, end.nodal, end.internal)
+        around.append(replace(beside_it, sides=sides, bends=yielding))
     residual = attempt.iterations[-1].contact_residual
     found = zip(
         balance.pairs, end.pressures, balance.split(balance.gap), balance.split(end.state.status),

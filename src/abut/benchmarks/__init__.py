@@ -31,6 +31,7 @@ from abut.benchmarks import (
     plastic,
     preloads,
     punches,
+    removals,
     stability,
 )
 from abut.benchmarks.record import Benchmark, Outcome, Reference, run
@@ -68,6 +69,7 @@ BENCHMARKS: dict[str, Benchmark] = {
         *preloads.BENCHMARKS,
         *loads.BENCHMARKS,
         *holds.BENCHMARKS,
+        *removals.BENCHMARKS,
         *penetration.BENCHMARKS,
     )
 }

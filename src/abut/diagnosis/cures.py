@@ -69,6 +69,7 @@ MODEL = {
     "strain": "check the units of Young's moduli, pressures and mesh: strains of this size are beyond linear elasticity",
     "stress error": "refine where the field stress_error is large, and round sharp inner corners, where stresses have "
     "no limit",
+    "hourglass": 'give the strip two cells across, or integration = "full" for its body',
     "bodies apart": "couple them: a contact for each of these pairs of bodies, or `auto = true`; if they are "
     "meant to be one, tie them or let them share nodes",
     "plastic strain": 'with small kinematics: kinematics = "finite"; with finite: check loads and yield stress, strains of '

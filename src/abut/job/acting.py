@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
-from abut.model import Hold, Model, Preload
+from abut.model import Hold, Model, Preload, Removal
 from abut.model.conditions import History, drives
 
 SAME = 1e-9  # of the time of a run, and of factors
@@ -43,11 +43,12 @@ def _line(model: Model, step: Part) -> str:
     loads = [*(_load(load, step) for load in model.loads), *(_fluid(item, step) for item in model.penetrations)]
     groups = {
         "supports": [_support(support, step) for support in model.supports],
+        "bodies": [_removal(removal, step) for removal in model.removals],
         "comes or goes": [_hold(hold, step) for hold in model.holds],
         "led": [_led(body, step) for body in (*model.rigid, *model.couplings, *model.rotations) if drives(body)],
         "loads": loads,
         "preloads": [_preload(preload, step) for preload in model.preloads],
-        "contacts": [_contact(contact, step) for contact in model.contacts],
+        "contacts": [_contact(contact, step, model.opened.get(contact.name)) for contact in model.contacts],
     }
     said = [f"{title} {', '.join(filter(None, texts))}" for title, texts in groups.items() if any(texts)]
     return f"step '{step.name}' (time {step.begin * step.last:g} to {step.end * step.last:g}): {'; '.join(said)}"
@@ -107,7 +108,21 @@ def _hold(hold: Hold, step: Part) -> str:
     return f"'{hold.name}' ({what})"
 
 
-def _contact(contact: Any, step: Part) -> str:
+def _removal(removal: Removal, step: Part) -> str:
+    """A body that is away at the beginning or the end of the step: while it is away, and what happens to it."""
+    goes = step.begin - SAME <= removal.until < step.end - SAME and removal.until > SAME
+    comes = step.begin - SAME <= removal.back < step.end - SAME
+    if not (goes or comes or removal.away(step.end)):
+        return ""
+    what = " and ".join(word for word, does in (("taken out", goes), ("comes back", comes)) if does) or "not there"
+    if comes and removal.until <= SAME:
+        what = "comes"
+    return f"'{removal.body}' ({what})"
+
+
+def _contact(contact: Any, step: Part, away: History) -> str:
+    if away is not None and away(step.end) > 0.0:  # a body of it is not there
+        return f"'{contact.name}' (open)"
     said = [
         f"{name} {change}"
         for name, history, counts in (

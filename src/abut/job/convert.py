@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +31,7 @@ from abut.model import (
     Model,
     SolveOptions,
 )
+from abut.model.removal import as_given
 from abut.output.options import EVERYTHING, Output
 from abut.types import Json
 
@@ -84,6 +85,7 @@ def job_table(model: Model, mesh: str, output: Output = EVERYTHING) -> Json:
         "preloads",
         "springs",
         "holds",
+        "removals",
         "penetrations",
         "probes",
     ):
@@ -122,7 +124,7 @@ def _parts(material: Material) -> Sequence[Material]:
 def _load(load: Load) -> Json:
     if isinstance(load, BodyForce):
         raise InputError("a job file holds no body force; use gravity")
-    return {"kind": LOAD_KINDS[type(load)], **_plain(load)}
+    return {"kind": LOAD_KINDS[type(load)], **_plain(replace(load, amplitude=as_given(load.amplitude)))}
 
 
 def _contact(contact: Contact) -> Json:

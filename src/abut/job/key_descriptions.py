@@ -4,6 +4,7 @@ A unit stands at the end in square brackets: force, length, mass, time and tempe
 
 from __future__ import annotations
 
+from abut.job.passing_keys import PASSING
 from abut.job.run_keys import RUN
 from abut.types import Json
 
@@ -34,6 +35,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "preloads": "bolts that are tightened: sections of bodies whose sides are drawn together",
         "springs": "springs to the ground, between points, and beds under surfaces",
         "holds": "supports that come or go on the way",
+        "removals": "bodies that go on the way, and may come back",
         "stops": "rigid planes that surfaces run against",
         "penetrations": "fluids under pressure that enter contacts wherever these are open",
         "rotations": "surfaces, node sets and bodies that turn about an axis; not with small kinematics",
@@ -306,18 +308,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "per_area": "of a surface: all these per area (force/length^3, force/length^2)",
         "weak": "only there to keep loose parts in place: the certificate judges its force",
     },
-    "HoldTable": {
-        "on": "name of the surface, node set or body",
-        "name": "for results; left out: that of on",
-        "x": "displacement along x, that of the undeformed mesh; stay: wherever it is at since; left out: free [length]",
-        "y": "the same along y [length]",
-        "z": "the same along z [length]",
-        "since": "time from which on it acts",
-        "reached": "time at which displacements are what is prescribed; left out: until, or the end",
-        "until": "time up to which it acts; left out: to the end",
-        "released": "time at which its force is gone; left out: the end",
-        "amplitude": "of x, y, z over time; left out: from 0 at since to 1 at reached",
-    },
+    **PASSING,
     "StopTable": {
         "direction": "of the motion that is stopped, of any length; axisymmetric: along the axis",
         "distance": "from where the surface reaches farthest to the plane, 0 or more [length]",

@@ -39,6 +39,7 @@ from abut.model import (
     Penetration,
     Preload,
     Probe,
+    Removal,
     Rigid,
     Rotation,
     Solid,
@@ -186,6 +187,7 @@ def _model(file: JobFile, folder: Path, refine: int) -> tuple[Model, Resolved]:
         preloads=[Preload(**values(p, f"preloads[{i}]")) for i, p in enumerate(file.preloads)],
         springs=[Spring(**values(s, f"springs[{i}]")) for i, s in enumerate(file.springs)],
         holds=[Hold(**values(h, f"holds[{i}]")) for i, h in enumerate(file.holds)],
+        removals=[Removal(**values(r, f"removals[{i}]")) for i, r in enumerate(file.removals)],
         penetrations=[Penetration(**values(p, f"penetrations[{i}]")) for i, p in enumerate(file.penetrations)],
         probes=[Probe(**values(probe, f"probes[{i}]")) for i, probe in enumerate(file.probes)],
         modes=[

@@ -13,7 +13,7 @@ from abut.job.load_tables import LOAD
 from abut.job.material_tables import MATERIAL, AxesTable
 from abut.job.run_tables import BUCKLING, FREQUENCIES, SOLVE, OutputTable, StepTable
 from abut.job.table import Number, OneOf, Points, Table, Time, Varying
-from abut.model import Hold, Penetration, Preload, Rotation, Spring
+from abut.model import Hold, Penetration, Preload, Removal, Rotation, Spring
 from abut.model.contact import GEOMETRIES, KINDS, LAWS, METHODS, PRESSURES, RULES, Contact, Integration
 from abut.model.coupling import KINDS as COUPLINGS
 from abut.model.coupling import Coupling
@@ -168,6 +168,11 @@ HOLD = table_of(
     "a support that comes or goes on the way",
 )
 STOP = table_of(Stop, meaning="a rigid plane that a surface runs against")
+REMOVAL = table_of(
+    Removal,
+    {"until": Time, **dict.fromkeys(("released", "since"), Time | None)},
+    "a body that goes on the way, and may come back",
+)
 PENETRATION = table_of(
     Penetration, {"source": str | list[Number]}, "a fluid under pressure that enters a contact where it is open"
 )
@@ -239,6 +244,7 @@ class JobFile(Table):
     springs: list[Annotated[Table, Of(SPRING)]] = []
     holds: list[Annotated[Table, Of(HOLD)]] = []
     stops: list[Annotated[Table, Of(STOP)]] = []
+    removals: list[Annotated[Table, Of(REMOVAL)]] = []
     penetrations: list[Annotated[Table, Of(PENETRATION)]] = []
     probes: list[ProbeTable] = []
     steps: list[StepTable] = []

@@ -24,6 +24,7 @@ from abut.contact.sides import (
     check_own,
     check_twice,
     find_sides,
+    listed,
     moving_sides,
     words,
 )
@@ -46,6 +47,7 @@ from abut.model.physics import TEMPERATURE, Physics, dofs_of
 from abut.model.preload import Preload, cut_sections
 from abut.model.prescribed import largest_prescribed
 from abut.model.probe import Probe, check_probes
+from abut.model.removal import Away, Removal, check_removals, loads_while_there, opened
 from abut.model.rotation import Rotation, check_rotations
 from abut.model.side_choice import SAME, decided, held_points, measured
 from abut.model.solid import Solid
@@ -59,6 +61,7 @@ RECORDS: dict[str, tuple[type, ...]] = {  # what the lists of a model are of
     "solids": (Solid,), "supports": (Support,), "loads": get_args(Load), "contacts": (Contact,), "equations": (Equation,),
     "rigid": (Rigid,), "probes": (Probe,), "rotations": (Rotation,), "couplings": (Coupling,), "preloads": (Preload,),
     "springs": (Spring,), "holds": (Hold,), "penetrations": (Penetration,), "modes": (Frequencies, Buckling),
+    "removals": (Removal,),
 }  # fmt: skip
 
 
@@ -106,8 +109,8 @@ class Model:
         Springs to ground, between points, beds; supports that come or go; fluids that enter contacts.
     physics : sequence of abut.model.physics.Physics
         Fields beside displacements, with terms of their own in the balance; on one process, with the direct solver.
-    modes : sequence of Frequencies and Buckling
-        What is found about the state at the end of the last step; on one process.
+    modes, removals : sequences of Frequencies and Buckling, of Removal
+        What is found about the state at the end of the last step, on one process; bodies that go, and may come back.
 
     Raises
     ------
@@ -152,6 +155,7 @@ class Model:
     penetrations: Sequence[Penetration] = ()
     physics: Sequence[Physics] = ()
     modes: Sequence[Frequencies | Buckling] = ()
+    removals: Sequence[Removal] = ()
 
     def __post_init__(self) -> None:
         checks.instance(self.mesh, MeshRecord, "model: mesh", "a mesh (abut.Mesh)")
@@ -172,6 +176,9 @@ class Model:
         check_springs(self.mesh, self.springs)
         object.__setattr__(self, "holds", check_holds(self.mesh, self.holds))
         object.__setattr__(self, "penetrations", check_penetrations(self.mesh, self.penetrations, self.contacts))
+        check_removals(self.mesh, self.removals, self.materials, self.preloads, [*self.physics, *self.modes])
+        object.__setattr__(self, "loads", loads_while_there(self.mesh, self.loads, self.removals, self.materials))
+        self.opened  # noqa: B018 - sides of contacts go as a whole
         check_kinematics(self.kinematics, self.solids)
         moving = moving_points(self.mesh, self.rigid, self.couplings)
         check_rotations(self.mesh, self.rotations, self.supports, moving, self.kinematics)
@@ -219,7 +226,8 @@ class Model:
     @property
     def linear_bodies(self) -> bool:
         """Whether forces of bodies are affine in the displacements, and depend on nothing else that is unknown."""
-        return self.deformable.constant and TEMPERATURE not in [field.name for field in self.dofs.fields]
+        heated = TEMPERATURE in [item.name for item in self.dofs.fields]
+        return self.deformable.constant and not (heated or self.removals)
 
     @property
     def referenced(self) -> tuple[Rigid | Coupling, ...]:
@@ -234,7 +242,12 @@ class Model:
         friction = [contact.friction_amplitude for contact in self.contacts]
         of_rigid = (history for body in self.referenced for history in body.amplitudes.values())
         others = (history for item in self.physics for history in item.amplitudes)
-        return tuple(dict.fromkeys([None, *amplitudes, *friction, *of_rigid, *others]))
+        return tuple(dict.fromkeys([None, *amplitudes, *friction, *of_rigid, *others, *self.opened.values()]))
+
+    @cached_property
+    def opened(self) -> dict[str, Away]:
+        """When contacts, by name, are open since a body of theirs is away."""
+        return opened(self.mesh, self.contacts, self.removals, self.penetrations)
 
     @cached_property
     def ends(self) -> tuple[float, ...]:
@@ -247,9 +260,9 @@ class Model:
 
     @property
     def locking(self) -> tuple[History, ...]:
-        """Histories with a corner where a preload is locked, or a hold comes or goes: load steps end there."""
-        each = [*(preload.locking for preload in self.preloads), *(hold.locking for hold in self.holds)]
-        return tuple(chain.from_iterable(each))
+        """With a corner where a preload is locked, a hold or a body comes or goes: load steps end there."""
+        changing: tuple[Preload | Hold | Removal, ...] = (*self.preloads, *self.holds, *self.removals)
+        return tuple(chain.from_iterable(item.locking for item in changing))
 
     def sides(self, contact: Contact) -> Sides:
         """Contactor and target of one of the contacts as surfaces; bodies as far as they can meet the other side."""
@@ -270,12 +283,9 @@ class Model:
     @cached_property
     def _sides(self) -> dict[str, Sides]:
         held = held_directions(self.mesh, self.supports)
-        made = {}
-        for c in self.contacts:
-            both = self._surfaces(c, c.contactor, c.target)
-            curved = c.kind != "tied" and c.geometry == GEOMETRIES[0]
-            made[c.name] = (with_bulge(both[0], held), with_bulge(both[1], held)) if curved else both
-        return made
+        made = {c.name: self._surfaces(c, c.contactor, c.target) for c in self.contacts}
+        curved = [c.name for c in self.contacts if c.kind != "tied" and c.geometry == GEOMETRIES[0]]
+        return made | {name: (with_bulge(made[name][0], held), with_bulge(made[name][1], held)) for name in curved}
 
     def _surfaces(self, contact: Contact, contactor: Names, target: Names) -> Sides:
         if self.finite and contact.kind != "tied":
@@ -302,24 +312,17 @@ class Model:
         for i, preload in enumerate(self.preloads):
             if preload.body in self.mesh.bodies and preload.body not in solid:
                 raise InputError(f"preloads[{i}].body: body '{preload.body}' is rigid and cannot be tightened")
-        sides = [
-            names
-            for contact in self.contacts
-            for side in contact.named
-            for names in ([side] if isinstance(side, str) else side)
-        ]
+        sides = [name for contact in self.contacts for side in contact.named for name in listed(side)]
         mesh, preloads = cut_sections(self.mesh, self.preloads, sides, self.loads)
         object.__setattr__(self, "mesh", mesh)
         object.__setattr__(self, "preloads", preloads)
 
     def _named(self) -> list[tuple[str, str | None]]:
         """Places in the mesh that entries name, and where."""
-        names = ("supports", "loads", "couplings", "rotations")
-        lists = {name: getattr(self, name) for name in names}
+        lists = {name: getattr(self, name) for name in ("supports", "loads", "couplings", "rotations")}
         named = [(f"{kind}[{i}].on", entry.on) for kind, entries in lists.items() for i, entry in enumerate(entries)]
         for i, contact in enumerate(self.contacts):
-            every = [name for side in contact.named for name in ([side] if isinstance(side, str) else side)]
-            named += [(f"contacts[{i}]", name) for name in every]
+            named += [(f"contacts[{i}]", name) for side in contact.named for name in listed(side)]
         return named
 
     def _check_plane(self) -> None:

@@ -8,10 +8,16 @@ from numpy.typing import NDArray
 from abut.model.contact import Contact
 from abut.model.model import Model
 
+FAR = 10.0  # sizes of the model: how far a contact of a body that is away is open
+
 
 def offsets(model: Model, contact: Contact) -> tuple[float, NDArray[np.float64]]:
     """The offset that is there from the start, and that of each history (n_histories,), lengths."""
     varying = np.zeros(len(model.histories))
+    if contact.name in model.opened:  # while a body of it is away
+        varying[model.histories.index(model.opened[contact.name])] = FAR * float(
+            np.ptp(model.mesh.points, axis=0).max()
+        )
     if contact.amplitude is None:
         return contact.offset, varying
     varying[model.histories.index(contact.amplitude)] = contact.offset

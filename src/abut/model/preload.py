@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,6 +16,7 @@ from abut.mesh.section import cut_open, plane_rows, shank
 from abut.model.conditions import Amplitude, History, check_amplitude, vector
 from abut.model.loads import NodalForce
 
+SIDES = (" section 1", " section 2")  # what names of the node sets on both sides end with
 SMALL = 1e-12  # component of a unit normal that is rounding
 
 
@@ -103,7 +104,7 @@ class Preload:
     @property
     def sides(self) -> tuple[str, str]:
         """Node sets of the points before and beyond the section, in the same order."""
-        return f"{self.name} section 1", f"{self.name} section 2"
+        return f"{self.name}{SIDES[0]}", f"{self.name}{SIDES[1]}"
 
 
 @dataclass(frozen=True)
@@ -151,7 +152,24 @@ def cut_sections(
         mesh, placed = _cut(mesh, preload, touching, where)
         _check_loads(mesh, placed, loads, where)
         result.append(placed)
+    _check_open(mesh, names)
     return mesh, tuple(result)
+
+
+def _check_open(mesh: Mesh, names: Collection[str]) -> None:
+    """Raise InputError for a mesh that is cut open for a preload of another name: nothing would hold its sides together."""
+    for first in mesh.node_sets:
+        name = first.removesuffix(SIDES[0])
+        if name in names or name == first or (second := f"{name}{SIDES[1]}") not in mesh.node_sets:
+            continue
+        before, beyond = mesh.node_sets[first], mesh.node_sets[second]
+        apart = len(before) != len(beyond) or np.isin(before, beyond).any()
+        if not apart and len(before) and (mesh.points[before] == mesh.points[beyond]).all():
+            raise InputError(
+                f"preloads: the mesh is cut open at the section of '{name}', and no preload has that name: nothing would "
+                "hold both sides together. Give the mesh that the model was made of (that of a model is cut), or keep the "
+                "preload: with shortening = 0 the section stays closed"
+            )
 
 
 def _cut(mesh: Mesh, preload: Preload, touching: Sequence[str], where: str) -> tuple[Mesh, Preload]:

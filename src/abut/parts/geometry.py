@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -86,8 +87,8 @@ def body_names(parts: Sequence[Part], given: Sequence[str], found: Sequence[tupl
 
 
 def cleaned(name: str) -> str:
-    """What of a name can stand in a job file without quotes."""
-    return re.sub(r"[^A-Za-z0-9_-]+", "_", name).strip("_")
+    """A name of letters of any alphabet, digits, _ and -, others than these in one _."""
+    return re.sub(r"[^\w-]+", "_", unicodedata.normalize("NFC", name)).strip("_")
 
 
 def face_names(part: Part, body: str) -> dict[int, str]:

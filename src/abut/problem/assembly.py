@@ -14,6 +14,7 @@ from abut.model.conditions import weights
 from abut.problem.adjusted_gaps import taken_off
 from abut.problem.backend import Backend
 from abut.problem.body_terms import Bodies, DeadLoads, LinearBodies, SolidBodies
+from abut.problem.changing_bodies import ChangingBodies
 from abut.problem.clock import Clock
 from abut.problem.constraints import Constraints, supports
 from abut.problem.contact_pairs import pairs, reach_of
@@ -119,6 +120,8 @@ def assemble(
 def _bodies(model: Model, loaded: Loads, backend: Backend) -> Bodies:
     if model.linear_bodies:
         return LinearBodies(backend, loaded, model.histories, model.temperatures)
+    if model.removals:
+        return ChangingBodies.of(model, loaded)
     return SolidBodies(model, loaded, backend)
 
 

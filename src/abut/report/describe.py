@@ -22,6 +22,7 @@ _GROUPS = (
     ("Preloads", "preloads"),
     ("Springs", "springs"),
     ("Supports that come or go", "holds"),
+    ("Bodies that go or come", "removals"),
     ("Pressure penetration", "penetrations"),
     ("Equations", "equations"),
     ("Contacts", "contacts"),

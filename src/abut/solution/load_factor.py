@@ -132,6 +132,8 @@ def _other_changes(model: Model, since: float) -> Iterator[str]:
         yield "the offset of a contact changes after it is tightened"
     if any(max(hold.since, 0.0 if hold.until is None else hold.end_of_release) > since + SAME for hold in model.holds):
         yield "supports come or go after it is tightened"
+    if model.removals:
+        yield "bodies go or come"
 
 
 def _histories(item: Any) -> list[History]:

@@ -20,6 +20,7 @@ from abut.solution.apart import bodies_apart
 from abut.solution.contacts import Check, ContactResult, worst
 from abut.solution.energy import Energy
 from abut.solution.flow import Flow
+from abut.solution.hourglass import hourglass
 from abut.solution.idle import idle_contacts
 from abut.solution.modes import ModesResult
 from abut.solution.penetrations import PenetrationResult
@@ -350,8 +351,10 @@ class Solution:
 
     @cached_property
     def _apart(self) -> tuple[Check, ...]:
-        """Of bodies that lie in each other, at the end of the run."""
-        return tuple(bodies_apart(self.model, self.displacement)) if self.complete else ()
+        """Of bodies that lie in each other, and of motions without stiffness, at the end of the run."""
+        if not self.complete:
+            return ()
+        return (*bodies_apart(self.model, self.displacement), *hourglass(self.model, self.displacement))
 
     @property
     def displacement(self) -> NDArray[np.float64]:
