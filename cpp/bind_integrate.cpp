@@ -51,12 +51,12 @@ static std::optional<std::tuple<std::size_t, double>>
 integrate_hyperelastic(const CellArrays &cells, Matrix<double> constants, Law law, bool plane_stress,
                        Matrix<double> displacement, std::optional<Matrix<double>> thermal,
                        std::optional<Output<2>> force, std::optional<Tangent> tangent, std::optional<Output<2>> stress,
-                       std::optional<Output<1>> energy) {
+                       std::optional<Output<1>> energy, std::optional<Matrix<double>> earlier, bool guessed) {
   if (constants.shape(0) != cells.count() || constants.shape(1) != 2 || (energy && energy->shape(0) != cells.count()))
     throw nb::value_error("cells and materials or energies disagree");
   Results results = cells.results(force, tangent, stress);
   results.energy = energy ? energy->data() : nullptr;
-  const Unsound unsound = cells.integrate<FiniteStrain>(cells.state(displacement, thermal),
+  const Unsound unsound = cells.integrate<FiniteStrain>(cells.state(displacement, thermal, earlier, guessed),
                                                         Hyperelastic{constants.data(), law, plane_stress}, results);
   return told(unsound);
 }
@@ -73,13 +73,14 @@ static void integrate_given_finite(const CellArrays &cells, Matrix<double> displ
                                    std::optional<Matrix<double>> thermal, Matrix<double> strains,
                                    Matrix<double> stresses, Tensor3<double> tangents, bool plane_stress,
                                    std::optional<Output<2>> force, std::optional<Tangent> tangent,
-                                   std::optional<Output<2>> stress) {
+                                   std::optional<Output<2>> stress, std::optional<Matrix<double>> earlier,
+                                   bool guessed) {
   const std::size_t points = cells.integration_points();
   if (strains.shape(0) != points || strains.shape(1) != STRAINS || stresses.shape(0) != points ||
       stresses.shape(1) != STRAINS || tangents.shape(0) != points || tangents.shape(1) != STRAINS ||
       tangents.shape(2) != STRAINS)
     throw nb::value_error("integration points and what is given there disagree");
-  cells.integrate<FiniteStrain>(cells.state(displacement, thermal),
+  cells.integrate<FiniteStrain>(cells.state(displacement, thermal, earlier, guessed),
                                 GivenFinite{strains.data(), stresses.data(), tangents.data(), plane_stress},
                                 cells.results(force, tangent, stress));
 }
@@ -116,6 +117,7 @@ void bind_integrate(nb::module_ &m) {
         nb::arg("thermal").noconvert().none(), nb::arg("strains").noconvert(), nb::arg("stresses").noconvert(),
         nb::arg("tangents").noconvert(), nb::arg("plane_stress"), nb::arg("force").noconvert() = nb::none(),
         nb::arg("tangent").noconvert() = nb::none(), nb::arg("stress").noconvert() = nb::none(),
+        nb::arg("earlier").noconvert() = nb::none(), nb::arg("guessed") = false,
         "As ``integrate_given`` at these strains, with the second stresses of Piola and Kirchhoff and their tangents; "
         "stress: "
         "Cauchy's is written.");
@@ -128,9 +130,11 @@ void bind_integrate(nb::module_ &m) {
         nb::arg("law"), nb::arg("plane_stress"), nb::arg("displacement").noconvert(),
         nb::arg("thermal").noconvert() = nb::none(), nb::arg("force").noconvert() = nb::none(),
         nb::arg("tangent").noconvert() = nb::none(), nb::arg("stress").noconvert() = nb::none(),
-        nb::arg("energy").noconvert() = nb::none(),
+        nb::arg("energy").noconvert() = nb::none(), nb::arg("earlier").noconvert() = nb::none(),
+        nb::arg("guessed") = false,
         "The same under finite strains, with constants (cells, 2) of a hyperelastic law, Cauchy stresses, and energy "
-        "(cells,). Where a cell has no sound deformation: its number and det F; what was added up is then "
+        "(cells,); with an earlier displacement the tangent has the pressures foreseen there. Where a cell has no "
+        "sound deformation: its number and det F; what was added up is then "
         "incomplete.");
 }
 

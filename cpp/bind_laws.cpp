@@ -50,18 +50,16 @@ struct Histories {
 };
 
 template <class Make>
-Failure integrate_with_history(const CellArrays &cells, bool finite, std::optional<Matrix<double>> displacement,
-                               std::optional<Matrix<double>> thermal, const Histories &histories, Results results,
-                               std::optional<Output<1>> energy, const Make &material) {
+Failure integrate_with_history(const CellArrays &cells, bool finite, const State &state, const Histories &histories,
+                               Results results, std::optional<Output<1>> energy, const Make &material) {
   const std::size_t points = cells.integration_points(), h = histories.numbers;
   const auto &[numbers, before, after] = histories;
   if ((before && (before->shape(0) != points || before->shape(1) != h)) ||
       (after && (after->shape(0) != points || after->shape(1) != h)) || (energy && energy->shape(0) != cells.count()))
     throw nb::value_error("integration points and histories or energies disagree");
-  if (!displacement)
+  if (!state.displacement)
     throw nb::value_error("laws at points need displacements");
   results.energy = energy ? energy->data() : nullptr;
-  const State state = cells.state(displacement, thermal);
   const double *old = before && h ? before->data() : nullptr;
   double *now = after && h ? after->data() : nullptr;
   return told(finite ? cells.integrate<FiniteStrain>(state, material.template operator()<true>(old, now), results)
@@ -78,7 +76,8 @@ public:
                             std::optional<Matrix<double>> displacement, std::optional<Matrix<double>> thermal,
                             std::optional<Matrix<double>> before, std::optional<Output<2>> force,
                             std::optional<Tangent> tangent, std::optional<Output<2>> stress,
-                            std::optional<Output<1>> energy, std::optional<Output<2>> after) const = 0;
+                            std::optional<Output<1>> energy, std::optional<Output<2>> after,
+                            std::optional<Matrix<double>> earlier, bool guessed) const = 0;
 };
 
 template <class Law> class Held final : public PointLaw {
@@ -97,9 +96,10 @@ public:
   Failure integrate(const CellArrays &cells, bool finite, bool plane_stress, std::optional<Matrix<double>> displacement,
                     std::optional<Matrix<double>> thermal, std::optional<Matrix<double>> before,
                     std::optional<Output<2>> force, std::optional<Tangent> tangent, std::optional<Output<2>> stress,
-                    std::optional<Output<1>> energy, std::optional<Output<2>> after) const override {
-    return integrate_with_history(cells, finite, displacement, thermal, {law.history, before, after},
-                                  cells.results(force, tangent, stress), energy,
+                    std::optional<Output<1>> energy, std::optional<Output<2>> after,
+                    std::optional<Matrix<double>> earlier, bool guessed) const override {
+    return integrate_with_history(cells, finite, cells.state(displacement, thermal, earlier, guessed),
+                                  {law.history, before, after}, cells.results(force, tangent, stress), energy,
                                   [&]<bool logarithmic>(const double *old, double *now) {
                                     return PointMaterial<Law, logarithmic>{law, plane_stress, old, now};
                                   });
@@ -154,8 +154,8 @@ static Failure integrate_over_temperature(const J2OverTemperature &law, const Ce
   const std::size_t points = cells.integration_points();
   if (temperature.shape(0) != points || swelling.shape(0) != points)
     throw nb::value_error("integration points and temperatures disagree");
-  return integrate_with_history(cells, finite, displacement, std::nullopt, {law.history(), before, after},
-                                cells.results(force, tangent, stress), energy,
+  return integrate_with_history(cells, finite, cells.state(displacement, std::nullopt, std::nullopt, false),
+                                {law.history(), before, after}, cells.results(force, tangent, stress), energy,
                                 [&]<bool logarithmic>(const double *old, double *now) {
                                   return HeatedMaterial<J2OverTemperature, logarithmic>{
                                       law, plane_stress, temperature.data(), swelling.data(), old, now};
@@ -182,6 +182,7 @@ void bind_laws(nb::module_ &m) {
            nb::arg("before").noconvert() = nb::none(), nb::arg("force").noconvert() = nb::none(),
            nb::arg("tangent").noconvert() = nb::none(), nb::arg("stress").noconvert() = nb::none(),
            nb::arg("energy").noconvert() = nb::none(), nb::arg("after").noconvert() = nb::none(),
+           nb::arg("earlier").noconvert() = nb::none(), nb::arg("guessed") = false,
            "As ``integrate_isotropic`` and ``integrate_hyperelastic``; before and after: histories (cells q, h).");
   nb::class_<J2OverTemperature>(m, "J2OverTemperature",
                                 "Von Mises plasticity whose constants depend on the temperature.")

@@ -44,12 +44,15 @@ public:
             derivatives.data(), weights.data(), weights.shape(0), mean_dilatation, pressures};
   }
 
-  State state(const std::optional<Matrix<double>> &displacement, const std::optional<Matrix<double>> &thermal) const {
-    if (displacement && (displacement->shape(0) != rows() || displacement->shape(1) != dim()))
-      throw nb::value_error("points and displacement disagree");
+  State state(const std::optional<Matrix<double>> &displacement, const std::optional<Matrix<double>> &thermal,
+              const std::optional<Matrix<double>> &earlier = std::nullopt, bool guessed = false) const {
+    for (const auto &moved : {displacement, earlier})
+      if (moved && (moved->shape(0) != rows() || moved->shape(1) != dim()))
+        throw nb::value_error("points and displacement disagree");
     if (thermal && (thermal->shape(0) != count() || thermal->shape(1) != nodes.shape(1)))
       throw nb::value_error("cells and thermal strain disagree");
-    return {displacement ? displacement->data() : nullptr, thermal ? thermal->data() : nullptr};
+    return {displacement ? displacement->data() : nullptr, thermal ? thermal->data() : nullptr,
+            earlier ? earlier->data() : nullptr, guessed};
   }
 
   Results results(const std::optional<Output<2>> &force, const std::optional<Tangent> &tangent,

@@ -40,7 +40,6 @@ public:
   // deformation gradient is not positive.
   bool deform(const double *u, double &determinant) {
     double slope[3][3];
-    Deformed centre;
     if (cells.mean_dilatation) {
       displacement_slope(u, centre_gradient.data(), centre_hoop.data(), slope);
       centre.set(slope);
@@ -73,6 +72,16 @@ public:
       strain[s] *= square;
     for (int a = 0; a < SCALED; ++a)
       strain[a] += (square - 1) / 2;
+  }
+
+  // Change of the volume that counts at the points since ``past``, (rule,): all of it, or without what is linear in
+  // displacements.
+  void bend(const FiniteStrain &past, bool all, double *change) {
+    for (std::size_t q = 0; q < cells.rule; ++q) {
+      const Deformed &from = cells.mean_dilatation ? past.centre : past.points[q];
+      const Deformed &to = cells.mean_dilatation ? centre : points[q];
+      change[q] = all ? to.det - from.det : bent(from, to);
+    }
   }
 
   // Takes the stretch out of the plane that leaves no stress there.
@@ -186,6 +195,27 @@ protected:
         }
     }
   };
+
+  // Of det F from one state to another, without what is linear in the displacements between them.
+  static double bent(Deformed from, const Deformed &to) {
+    double h[3][3] = {{0}};
+    from.invert();
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b)
+        for (int c = 0; c < 3; ++c)
+          h[a][b] += (to.f[a][c] - from.f[a][c]) * from.inverse[c][b];
+    return from.det * (second(h) + third(h));
+  }
+
+  // Invariants of a tensor; the third one is its determinant.
+  static double second(const double (&h)[3][3]) {
+    return h[0][0] * h[1][1] - h[0][1] * h[1][0] + h[1][1] * h[2][2] - h[1][2] * h[2][1] + h[2][2] * h[0][0] -
+           h[2][0] * h[0][2];
+  }
+  static double third(const double (&h)[3][3]) {
+    return h[0][0] * (h[1][1] * h[2][2] - h[1][2] * h[2][1]) - h[0][1] * (h[1][0] * h[2][2] - h[1][2] * h[2][0]) +
+           h[0][2] * (h[1][0] * h[2][1] - h[1][1] * h[2][0]);
+  }
 
   static constexpr int AT[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}}; // components of a symmetric tensor
   static constexpr int RESPONSE = dim * dim * dim + (axisymmetric ? dim : 0);
@@ -376,6 +406,7 @@ protected:
   std::vector<double> gradient;     // (rule, n, dim) of the undeformed cell
   std::vector<double> hoop, volume; // (rule, n) shape function over radius; (rule) weight times size
   std::vector<Deformed> points;     // (rule)
+  Deformed centre;                  // where F-bar has its dilatation from
   std::vector<double> response;     // (n, RESPONSE)
   std::vector<double> centre_shapes, centre_derivatives, centre_gradient, centre_hoop, centre_pushed;
 };

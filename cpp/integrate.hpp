@@ -2,21 +2,25 @@
 // what they add up to.
 #pragma once
 #include "finite_strain.hpp"
+#include "foreseen.hpp"
 #include "kinematics.hpp"
 #include "materials.hpp"
 #include "mixed_strain.hpp"
 #include <algorithm>
 #include <cstdint>
 #include <new>
+#include <optional>
 #include <type_traits>
 #include <vector>
 
 namespace abut {
 
 // displacement (points, dim); thermal: null, or the thermal strain of each cell at its nodes (cells, n), alike in all
-// directions, which the shape functions interpolate.
+// directions, which the shape functions interpolate; earlier: null, or the displacement from which an iteration of
+// Newton's method led here, or a guess if ``guessed``.
 struct State {
-  const double *displacement = nullptr, *thermal = nullptr;
+  const double *displacement = nullptr, *thermal = nullptr, *earlier = nullptr;
+  bool guessed = false;
 };
 
 // What is asked for; null pointers are left out. All but stresses are added to.
@@ -84,7 +88,8 @@ public:
   Integration(const Cells &cells, const State &state, const Material &material, const Results &results, Rows rows)
       : cells(cells), state(state), material(material), results(results), rows(rows), kinematics(cells), n(cells.n),
         x(n * dim), u(n * dim), stress(cells.rule * STRAINS), tangent(cells.rule), force(n * dim),
-        block(results.stiffness ? n * n * dim * dim : 0) {}
+        block(results.stiffness ? n * n * dim * dim : 0), strains(foresees() ? stress.size() : 0),
+        foreseen(strains.size()), bent(foresees() ? cells.rule : 0) {}
 
   // Ends at the first cell without a sound deformation, and says which.
   Unsound run() {
@@ -101,6 +106,10 @@ public:
         evaluate(c);
       if (results.force)
         add_force();
+      turning = stress.data();
+      if constexpr (Kinematics::finite)
+        if (results.stiffness && foresees())
+          foresee();
       if (results.stiffness)
         add_stiffness();
       if (results.stress && rows.has(own[0]))
@@ -143,6 +152,8 @@ private:
       return std::isfinite(determinant) ? determinant : 0;
     for (std::size_t q = 0; q < cells.rule; ++q) {
       kinematics.strain(q, strain);
+      if (foresees())
+        std::copy_n(strain, STRAINS, &strains[q * STRAINS]);
       const double stretch = 1 + (state.thermal ? at_point(kinematics.swelling(), n, q, state.thermal + c * n) : 0);
       double *const at = &stress[q * STRAINS];
       // In its place: copies of a tangent take as long as some laws.
@@ -158,6 +169,28 @@ private:
     if (results.energy && rows.has(own[0]))
       results.energy[c] = energy;
     return std::nan("");
+  }
+
+  // Whether the cells have a volume of their own, F-bar's or that of mixed cells, whose pressure is foreseen.
+  bool foresees() const { return state.earlier && (cells.mean_dilatation || cells.pressures > 0); }
+
+  // The stiffness takes pressures as they were foreseen where the iteration began, as if they were unknowns beside
+  // displacements, theory (D24): what displacements add to the volume beyond the first order is no stress yet.
+  void foresee() {
+    if (!past)
+      past.emplace(cells);
+    gather(state.earlier, own, n, dim, u.data());
+    double determinant;
+    past->place(x.data());
+    foreseen = stress;
+    if (!past->deform(u.data(), determinant))
+      return;
+    kinematics.bend(*past, state.guessed, bent.data());
+    for (std::size_t q = 0; q < cells.rule; ++q)
+      foresee_pressure(&strains[q * STRAINS], bent[q], &foreseen[q * STRAINS], tangent[q].c);
+    turning = foreseen.data();
+    if constexpr (requires { kinematics.collect(foreseen.data()); })
+      kinematics.collect(foreseen.data());
   }
 
   void add_force() {
@@ -180,7 +213,7 @@ private:
     std::fill(block.begin(), block.end(), 0.0);
     for (std::size_t q = 0; q < cells.rule; ++q)
       if constexpr (Kinematics::finite)
-        kinematics.add_stiffness(q, tangent[q], &stress[q * STRAINS], half(), block.data());
+        kinematics.add_stiffness(q, tangent[q], turning + q * STRAINS, half(), block.data());
       else if constexpr (std::is_same_v<Tangent, Moduli>)
         kinematics.add_stiffness(q, tangent[q], block.data());
       else
@@ -228,7 +261,10 @@ private:
   std::vector<double> x, u, stress;
   std::vector<Tangent> tangent;
   std::vector<double> force, block;
-  const std::int32_t *own = nullptr; // nodes of the cell
+  std::vector<double> strains, foreseen, bent; // at the points: strains, stresses with foreseen pressures, as ``bend``
+  std::optional<Kinematics> past;              // where the iteration began
+  const double *turning = nullptr;             // stresses that the stiffness has
+  const std::int32_t *own = nullptr;           // nodes of the cell
 };
 
 template <class Kinematics, class Material>

@@ -59,6 +59,12 @@ public:
       strain[s] = points[q].strain[s] * (1 + more) + (s < 3) * more / 2;
   }
 
+  // As in ``FiniteStrain``.
+  void bend(const MixedStrain &past, bool all, double *change) {
+    Base::bend(past, all, growth.data());
+    functions.project(growth.data(), volume.data(), 1, factors.data(), change);
+  }
+
   // Takes the stresses (rule, 6) of all points, whose pressures act over the cell.
   void collect(const double *stress) {
     for (std::size_t q = 0; q < cells.rule; ++q) {
@@ -157,12 +163,7 @@ private:
 
   // det(1 + slope) - 1, which keeps its digits where it is small.
   static double expansion(const double (&h)[3][3]) {
-    const double second = h[0][0] * h[1][1] - h[0][1] * h[1][0] + h[1][1] * h[2][2] - h[1][2] * h[2][1] +
-                          h[2][2] * h[0][0] - h[2][0] * h[0][2];
-    const double third = h[0][0] * (h[1][1] * h[2][2] - h[1][2] * h[2][1]) -
-                         h[0][1] * (h[1][0] * h[2][2] - h[1][2] * h[2][0]) +
-                         h[0][2] * (h[1][0] * h[2][1] - h[1][1] * h[2][0]);
-    return h[0][0] + h[1][1] + h[2][2] + second + third;
+    return h[0][0] + h[1][1] + h[2][2] + Base::second(h) + Base::third(h);
   }
 
   // The scaled right Cauchy-Green tensor, shear doubled: strain by the logarithm of the factor.

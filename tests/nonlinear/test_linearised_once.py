@@ -42,11 +42,11 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> Counter[tuple[bytes | float, ...
     frames: list[Frame] = []
     own: Callable[..., Linearised] = ContactProblem.linearise
 
-    def linearise(problem: ContactProblem, before: State, frame: Frame, now: State) -> Linearised:
+    def linearise(problem: ContactProblem, before: State, frame: Frame, now: State, *path: object) -> Linearised:
         if not any(frame is known for known in frames):
             frames.append(frame)  # kept, so that no other has its place in memory
         seen[(now.time, now.unknowns.tobytes(), now.multipliers.tobytes(), float(id(frame)))] += 1
-        return own(problem, before, frame, now)
+        return own(problem, before, frame, now, *path)
 
     monkeypatch.setattr(ContactProblem, "linearise", linearise)
     return seen

@@ -11,9 +11,8 @@ import abut
 from abut.analysis.linear_solvers import linear_solver
 from abut.diagnosis.cures import cures
 from abut.nonlinear.drag import Drag, dragged, scale
-from abut.nonlinear.one_step import Setting
+from abut.nonlinear.one_step import Setting, is_gone, stabilised
 from abut.nonlinear.settings import DEFAULT
-from abut.nonlinear.stabilised import is_gone, stabilised
 from abut.output.contact_rows import energy_columns, energy_row
 from abut.problem.stabilising import drag_of, is_dragged, with_drag
 from abut.solution import Saved, Solution

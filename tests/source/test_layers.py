@@ -15,7 +15,7 @@ from scipy.sparse.csgraph import connected_components
 ROOT = Path(__file__).parents[2]
 PYTHON = sorted((ROOT / "src" / "abut").rglob("*.py"))
 CPP = sorted((ROOT / "cpp").glob("*.[ch]pp"))
-LINES, PARAMETERS, FILE = 60, 8, 400
+LINES, PARAMETERS, FILE, FLOORS = 60, 8, 400, 7
 
 
 def module(path: Path) -> str:
@@ -67,6 +67,37 @@ def test_cycles_are_found() -> None:
     assert imported(typing, known) == {"a", "b"}
     assert imported("from c import d, e", known) == {"c.d", "c"}
     assert cycles({"a": {"b"}, "b": {"c"}, "c": {"a"}, "c.d": {"c"}}) == [{"a", "b", "c"}]
+
+
+def floors(imports: dict[str, set[str]], folder: str) -> dict[str, int]:
+    """By file of a folder how many files of that folder stand on each other below it and with it."""
+    own = {name: {other for other in others if other.startswith(folder)} for name, others in imports.items()}
+    result: dict[str, int] = {}
+
+    def floor(name: str) -> int:
+        if name not in result:
+            result[name] = 1 + max((floor(other) for other in own[name]), default=0)
+        return result[name]
+
+    for name in own:
+        if name.startswith(folder):
+            floor(name)
+    return result
+
+
+@pytest.mark.parametrize("folder", ["problem", "nonlinear"])
+def test_floors_are_few(folder: str) -> None:
+    """Whoever follows a call through a folder gets to its ground in seven files."""
+    known = {module(path) for path in PYTHON}
+    imports = {module(path): imported(path.read_text(encoding="utf-8"), known) for path in PYTHON}
+    high = {name for name, floor in floors(imports, f"abut.{folder}.").items() if floor > FLOORS}
+    assert not high
+
+
+def test_floors_are_counted() -> None:
+    """Within the folder alone, whatever imports it."""
+    imports = {"a.x": {"a.y", "b"}, "a.y": {"a.z"}, "a.z": set(), "a.w": {"a.z"}, "b": set(), "c": {"a.x"}}
+    assert floors(imports, "a.") == {"a.x": 3, "a.y": 2, "a.z": 1, "a.w": 2}
 
 
 def of_python(source: str) -> Iterator[tuple[str, int, int]]:

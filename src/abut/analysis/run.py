@@ -23,14 +23,14 @@ from abut.model import Model
 from abut.model.conditions import weights
 from abut.model.offset import offsets
 from abut.model.side_choice import choices
-from abut.nonlinear.again import Again, prepared
+from abut.nonlinear.again import Again
 from abut.nonlinear.attempt import Attempt
 from abut.nonlinear.large_steps import LargeSteps
 from abut.nonlinear.march import Control, Stepper, march
+from abut.nonlinear.one_step import strides
 from abut.nonlinear.pace import Pace, Slips, given_pace, pace_of
 from abut.nonlinear.settings import DEFAULT, Settings
-from abut.nonlinear.stabilised import strides
-from abut.nonlinear.stepping import ABSURD, SmallSteps
+from abut.nonlinear.stepping import ABSURD, SmallSteps, prepared
 from abut.probing import Place, find_places, read
 from abut.problem.assembly import Assembled, assemble, prescribed
 from abut.problem.clock import Clock

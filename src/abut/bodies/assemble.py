@@ -12,7 +12,7 @@ from abut._core import block_pattern
 from abut.bodies.evaluation import History
 from abut.bodies.integrate import integrate
 from abut.bodies.solids import UNHEATED, Array, Solids, TemperatureChange
-from abut.materials.kernel import Wanted
+from abut.materials.kernel import Since, Wanted
 from abut.materials.material import linear, symmetric
 from abut.types import Operator, Sparse
 
@@ -63,8 +63,10 @@ def respond(
     temperature: TemperatureChange = UNHEATED,
     history: History | None = None,
     tangent: bool = True,
+    since: Since | None = None,
 ) -> Response:
     """Internal force, tangent (unless not wanted), new history and energy together; of finite strains theory (D1), (D2).
+    since: from where Newton's method came; the tangent is then that of theory (D24).
 
     Raises InputError for a material that returns arrays of other shapes than it should, and Inverted."""
     force, energy = np.zeros(solids.points.shape), np.zeros(solids.mesh.n_cells)
@@ -75,7 +77,7 @@ def respond(
     for group in solids.groups():
         of_cells = np.zeros(len(group.cells))
         wanted = Wanted(force, entries, energy=of_cells)
-        new = integrate(solids, group, group.rule, moved, temperature, history, wanted)
+        new = integrate(solids, group, group.rule, moved, temperature, history, wanted, since)
         energy[group.cells] = of_cells
         after.setdefault(group.body, []).extend(new)
     history = {body: np.concatenate(parts) for body, parts in after.items() if body}

@@ -11,7 +11,7 @@ from abut.bodies.evaluation import History, Part, evaluate, places
 from abut.bodies.inverted import require_sound
 from abut.bodies.solids import Array, Group, Solids, TemperatureChange
 from abut.bodies.volumes import point_volumes
-from abut.materials.kernel import At, Kernel, Wanted
+from abut.materials.kernel import At, Since, Wanted
 from abut.materials.material import compiled, stored
 from abut.materials.places import is_local
 from abut.mesh.quadrature import Rule
@@ -25,14 +25,15 @@ def integrate(
     temperature: TemperatureChange,
     history: History | None,
     wanted: Wanted,
+    since: Since | None = None,
 ) -> list[Array]:
     """Adds and writes what is wanted of a group, in place; returns its new history, in parts, empty for bodies that go
     together. wanted.after is made here. displacement (n_points, dim), None under small strains: none; history None: the
-    initial one.
+    initial one; since: from where Newton's method came.
 
     Raises Inverted, under finite strains, and InputError for materials that return arrays of other shapes."""
     if group.kernel is not None:
-        return _compiled(solids, group, group.kernel, rule, displacement, temperature, history, wanted)
+        return _compiled(solids, group, rule, displacement, temperature, history, wanted, since)
     after, done, told = [], 0, 0
     for part, strain, (stress, slope, new) in evaluate(solids, group, rule, displacement, temperature, history):
         rows = slice(done, done := done + len(stress))
@@ -41,7 +42,7 @@ def integrate(
             at_points = None if wanted.stress is None else wanted.stress[rows]
             integrate_given_finite(
                 part.cells, displacement, part.thermal, strain, stress, slope, solids.plane == "stress", wanted.force,
-                wanted.tangent, at_points,
+                wanted.tangent, at_points, *((None, False) if since is None else (since.displacement, since.guessed)),
             )  # fmt: skip
             if wanted.energy is not None:
                 of_cells = slice(told, told := told + len(part.group.cells))
@@ -66,19 +67,21 @@ def _stored(solids: Solids, part: Part, rule: Rule, strain: Array, history: Arra
 def _compiled(
     solids: Solids,
     group: Group,
-    kernel: Kernel,
     rule: Rule,
     displacement: Array | None,
     temperature: TemperatureChange,
     history: History | None,
     wanted: Wanted,
+    since: Since | None,
 ) -> list[Array]:
+    kernel = group.kernel
+    assert kernel is not None
     cells, thermal = group.arrays(solids, rule), temperature.strain(solids, group)
     constants = {}
     for body, material in solids.materials.items():
         known = compiled(material, solids.kinematics == "finite")
         constants[body] = (0.0, 0.0) if known is None or known.kernel != kernel else known.constants
-    at = At(cells, solids.by_cell(group, constants), solids.plane == "stress", displacement, thermal)
+    at = At(cells, solids.by_cell(group, constants), solids.plane == "stress", displacement, thermal, since=since)
     if not group.body:
         require_sound(solids, group, kernel.integrate(at, wanted))
         return []

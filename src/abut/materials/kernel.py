@@ -28,10 +28,20 @@ class Wanted:
 
 
 @dataclass(frozen=True)
+class Since:
+    """From where Newton's method came to a displacement. displacement: (n_points, dim), of an iteration, or what a guess
+    starts from."""
+
+    displacement: Array
+    guessed: bool = False
+
+
+@dataclass(frozen=True)
 class At:
     """Where to integrate: cells with a rule, constants (cells, m), plane_stress, displacement (n_points, dim) or None,
-    thermal strains (cells, n_nodes) or None, and history before, (cells q, h). change: (cells q,) how much warmer the points
-    became, of materials that take the temperature themselves."""
+    thermal strains (cells, n_nodes) or None, history before, (cells q, h), and under finite strains from where
+    Newton's method came. change: (cells q,) how much warmer the points became, of materials that take the temperature
+    themselves."""
 
     cells: Cells
     constants: Array
@@ -40,6 +50,12 @@ class At:
     thermal: Array | None
     before: Array | None = None
     change: Array | None = None
+    since: Since | None = None
+
+    @property
+    def earlier(self) -> tuple[Array | None, bool]:
+        """From where Newton's method came, for the compiled core."""
+        return (None, False) if self.since is None else (self.since.displacement, self.since.guessed)
 
 
 class Kernel(Protocol):
@@ -99,7 +115,7 @@ class HyperelasticKernel:
         """As in ``Kernel``."""
         return integrate_hyperelastic(
             at.cells, at.constants, self.law, at.plane_stress, at.displacement, at.thermal, wanted.force, wanted.tangent,
-            wanted.stress, wanted.energy,
+            wanted.stress, wanted.energy, *at.earlier,
         )  # fmt: skip
 
 
@@ -116,7 +132,7 @@ class PointKernel:
         """As in ``Kernel``."""
         return self.law.integrate(
             at.cells, self.finite, at.plane_stress, at.displacement, at.thermal, at.before, wanted.force, wanted.tangent,
-            wanted.stress, wanted.energy, wanted.after,
+            wanted.stress, wanted.energy, wanted.after, *at.earlier,
         )  # fmt: skip
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
@@ -14,6 +14,7 @@ from abut.linear.solver import Prepared
 from abut.nonlinear.exact import Aim, Solved, finer, settled, solve_set
 from abut.nonlinear.friction import solve_friction
 from abut.nonlinear.iteration import Found, Increment, active_laws
+from abut.nonlinear.newton import End, Method, newton
 from abut.nonlinear.search import Log, search
 from abut.nonlinear.settings import Settings
 from abut.nonlinear.smooth_laws import finish_smooth
@@ -41,44 +42,84 @@ def solve_step(
         if not found.converged:
             return found
         return finish_smooth(solver, found.state, increment, limit, list(found.iterations), observe)
-    tied = solver.system.tied
-    settings = increment.settings
-    course = Course(solver, tied, settings, settings.accuracy.rough)
-    state = begin
-    sets: list[NDArray[np.bool_]] = []
+    tied, none = solver.system.tied, np.zeros(len(begin.status), dtype=bool)
     log = Log(list(earlier), observe, len(earlier) + limit)
-    before = np.inf
-    accuracy = settings.accuracy.stride if settle else settings.accuracy.rough
-    if state.closed.all() and not settle:
-        accuracy = 0.1 * solver.accurate  # closed all over may well be the answer
-    while not log.full:
+    method = ActiveSet(solver, increment, log, aim)
+    there, end = newton(method, Trial(begin, method.first(begin, settle)), limit)
+    if end is End.STALLED:
+        return search(solver, begin, increment, limit, log, tied, aim)
+    if end is End.SOLVED and aim == "set":
+        return Found(there.state, tuple(log.done), True, none, active_laws)
+    if end is End.SOLVED:
+        return finish_smooth(solver, there.state, increment, limit, log.done, observe)
+    return Found(there.state, tuple(log.done), False, method.cycling(there), active_laws)
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A state with the active set to solve with, or as it was solved: accuracy: asked of the solution; solved: what it left;
+    singular: why there is none."""
+
+    state: State
+    accuracy: float
+    solved: Solved | None = None
+    singular: SingularModelError | None = None
+
+
+class ActiveSet(Method[Trial]):
+    """The set that the law asks for, or a better guess; ``search`` takes over where interior points are quicker."""
+
+    def __init__(self, solver: Prepared, increment: Increment, log: Log, aim: Aim) -> None:
+        self._solver, self._increment, self._log, self._aim = solver, increment, log, aim
+        self._tied, self._settings = solver.system.tied, increment.settings
+        self._course = Course(solver, self._tied, self._settings, self._settings.accuracy.rough)
+        self._sets: list[NDArray[np.bool_]] = []
+        self._before = np.inf
+
+    def first(self, begin: State, settle: bool) -> float:
+        """The reduction of the residual to ask of the first solution; settle: as for ``solve_step``."""
+        if begin.closed.all() and not settle:
+            return 0.1 * self._solver.accurate  # closed all over may well be the answer
+        return self._settings.accuracy.stride if settle else self._settings.accuracy.rough
+
+    def advanced(self, here: Trial) -> Trial:
+        """As in ``Method``."""
         try:
-            solved = solve_set(solver, state, increment, tied, log.next, accuracy)
-        except SingularModelError:
-            _check_balance(solver)
-            if tied.all() or aim == "this set":
-                raise
-            return search(solver, begin, increment, limit, log, tied, aim)
-        log.add(solved.row)
-        state = solved.state
-        sets.append(state.closed)
+            solved = solve_set(self._solver, here.state, self._increment, self._tied, self._log.next, here.accuracy)
+        except SingularModelError as reason:
+            return replace(here, singular=reason)
+        self._log.add(solved.row)
+        self._sets.append(solved.state.closed)
+        return Trial(solved.state, here.accuracy, solved)
+
+    def ended(self, there: Trial) -> End | None:
+        """As in ``Method``. Raises SingularModelError where nothing holds a body."""
+        if there.solved is None:
+            _check_balance(self._solver)
+            if there.singular is not None and (self._tied.all() or self._aim == "this set"):
+                raise there.singular
+            return End.STALLED
+        if there.solved.changed.any():
+            return End.EXHAUSTED if self._aim == "this set" else None
+        done = settled(self._solver, there.solved, self._settings, self._aim, self._before)
+        return End.SOLVED if done else None
+
+    def followed(self, there: Trial) -> Trial | None:
+        """The same set, solved better where it stands still, or the one to go on with."""
+        solved = there.solved
+        assert solved is not None
         if not solved.changed.any():
-            if settled(solver, solved, settings, aim, before):
-                if aim == "set":
-                    return Found(state, tuple(log.done), True, solved.changed, active_laws)
-                return finish_smooth(solver, state, increment, limit, log.done, observe)
-            accuracy, before = finer(solver, solved, settings, aim), solved.error
-            continue
-        before = np.inf
-        if aim == "this set":
-            break
-        following = course.following(solved, len(log.done) - len(earlier), accuracy)
-        if following is None:
-            return search(solver, begin, increment, limit, log, tied, aim)
-        state, accuracy = state.with_closed(following.closed), following.accuracy
-    recent = np.stack(sets[-2 * settings.newton.patience :])
-    cycling = (recent.any(axis=0) & ~recent.all(axis=0)) | solved.changed
-    return Found(state.with_closed(sets[-1]), tuple(log.done), False, cycling, active_laws)
+            self._before = solved.error
+            return replace(there, accuracy=finer(self._solver, solved, self._settings, self._aim))
+        self._before = np.inf
+        following = self._course.following(solved, len(self._sets), there.accuracy)
+        return None if following is None else Trial(solved.state.with_closed(following.closed), following.accuracy)
+
+    def cycling(self, there: Trial) -> NDArray[np.bool_]:
+        """(n,) multipliers that go in and out, or are about to."""
+        recent = np.stack(self._sets[-2 * self._settings.newton.patience :])
+        assert there.solved is not None
+        return np.asarray((recent.any(axis=0) & ~recent.all(axis=0)) | there.solved.changed)
 
 
 @dataclass(frozen=True)

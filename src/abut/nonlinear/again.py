@@ -8,16 +8,13 @@ import numpy as np
 
 from abut.linear.solver import LinearSolver, Prepared
 from abut.linear.static_condensation import CondensedProblem
-from abut.nonlinear.active_set import solve_step
 from abut.nonlinear.attempt import Attempt
 from abut.nonlinear.iteration import Increment
-from abut.nonlinear.load_step import load_step
-from abut.nonlinear.newton import Task
+from abut.nonlinear.load_step import Search, Task, load_step
 from abut.nonlinear.settings import Settings
 from abut.problem.problem import ContactProblem, Problem
 from abut.problem.terms import Motion, Share
 from abut.solution import Iteration
-from abut.solution.state import State
 
 
 @dataclass(frozen=True)
@@ -35,30 +32,24 @@ class Imposed:
 
 @dataclass(frozen=True)
 class Again:
-    """What it takes to solve steps again. problem: as its solver wants it; prepared: that, set up; limit: of iterations."""
+    """What it takes to solve steps again. problem: as its solver wants it; prepared: that, set up; limit: of iterations;
+    search: for the contact status."""
 
     problem: Problem
     solver: LinearSolver
     prepared: Prepared
     limit: int
     settings: Settings
+    search: Search
 
     def under(self, attempt: Attempt, imposed: Imposed) -> Attempt:
         """The end of a step (without friction, since it begins with its own end) with these forces. Raises
         SingularModelError and NotConverged."""
         increment = Increment(attempt.number, attempt.state.largest, self.settings)
         task = Task(
-            _with(self.problem, imposed), attempt.state, self.solver, increment, self.limit, _unseen, solve_step
+            _with(self.problem, imposed), attempt.state, self.solver, increment, self.limit, _unseen, self.search
         )
         return load_step(task, attempt.time, self.prepared)
-
-
-def prepared(problem: ContactProblem, solver: LinearSolver, state: State, settings: Settings) -> Again:
-    """Of a run that has not begun to solve; state: any of the problem."""
-    condensed = solver.condensed(problem)
-    system = condensed.linearise(state, condensed.frame(state), condensed.restrict(state))
-    limit = problem.model.solve.max_iterations
-    return Again(condensed, solver, solver.prepare(system, None), limit, settings)
 
 
 def _with(problem: Problem, imposed: Imposed) -> Problem:

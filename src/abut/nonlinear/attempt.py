@@ -11,6 +11,8 @@ from abut.problem.balance import Balance
 from abut.solution import Iteration
 from abut.solution.state import State
 
+UNSTEADY = "the fluid spreads on with every solution"
+
 
 @dataclass(frozen=True)
 class Attempt:

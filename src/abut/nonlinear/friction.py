@@ -1,33 +1,38 @@
-"""One load step with friction: Newton's method on contact and slip together, and interior points where that fails."""
+"""One load step with friction: Newton's method on contact and slip together, and where that fails interior points, then
+Newton's method from their status."""
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from abut.errors import SingularModelError
 from abut.linear.solver import Prepared
-from abut.nonlinear.friction_laws import Status
-from abut.nonlinear.friction_newton import Course, newton
-from abut.nonlinear.friction_search import search
-from abut.nonlinear.iteration import Found, Increment
+from abut.nonlinear.friction_laws import Status, next_status
+from abut.nonlinear.friction_newton import Course, slid
+from abut.nonlinear.interior_point import Interior, Manner, Programme, begin, iterate, near
+from abut.nonlinear.iteration import Found, Increment, largest_pressure, points
+from abut.nonlinear.newton import End, Method, newton
+from abut.nonlinear.settings import Settings
 from abut.problem.linearised import Linearised
 from abut.problem.pair import Pair
 from abut.solution import Iteration
-from abut.solution.state import CLOSED, State
+from abut.solution.state import CLOSED, OPEN, State
 
 
 def solve_friction(
     solver: Prepared,
-    begin: State,
+    first: State,
     increment: Increment,
     limit: int,
     observe: Callable[[Iteration], None],
     earlier: Sequence[Iteration] = (),
 ) -> Found:
-    """Find the state at the end of a load step, from the state ``begin``; limit: of iterations of each method; earlier:
+    """Find the state at the end of a load step, from the state ``first``; limit: of iterations of each method; earlier:
     iterations of the same step before.
 
     Where nothing converges it ends with the state that breaks the laws least. Raises SingularModelError where not even soft
@@ -35,10 +40,10 @@ def solve_friction(
     course = Course(solver, increment, list(earlier), observe)
     found, error = None, None
     try:
-        found = newton(course, begin.with_status(_completed(solver.system, begin)), limit)
+        found = slid(course, first.with_status(_completed(solver.system, first)), limit)
     except SingularModelError as reason:
         error = reason
-    found = found or search(course, begin, limit) or course.failed()
+    found = found or search(course, first, limit) or course.failed()
     if found is None:
         assert error is not None
         raise error
@@ -54,3 +59,101 @@ def _completed(system: Linearised, state: State) -> Status:
 
 def _whole(pair: Pair, closed: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return np.asarray(pair.of_functions(closed[pair.normal])) if pair.frictional else closed
+
+
+def search(course: Course, state: State, limit: int) -> Found | None:
+    """The solution of a load step from anywhere; None where none of the ways to it finds one. limit: of iterations of each.
+
+    Newton's method ends it as soon as interior points tell the status of most multipliers."""
+    interior = course.increment.settings.interior
+    bold = Manner(0.95, interior.central, least=interior.central**2)
+    for manner in (bold, replace(bold, boundary=0.7, central=50.0 * interior.central), replace(bold, dilates=True)):
+        try:
+            with np.errstate(all="ignore"):  # what is no number ends it
+                found = _by_cones(course, state, manner, limit)
+        except SingularModelError:
+            continue
+        if found is not None:
+            return found
+    return None
+
+
+@dataclass(frozen=True)
+class Trial:
+    """An iteration's end: inside the cones, with the status (n,) that it tells; found: a solution from there, if that is
+    one; apart: whether nothing presses any more."""
+
+    here: Interior
+    status: Status
+    found: Found | None = None
+    apart: bool = False
+
+
+class InteriorSliding(Method[Trial]):
+    """Interior points, until Newton's method finds the solution from the status that they tell."""
+
+    def __init__(self, course: Course, programme: Programme, manner: Manner, first: float) -> None:
+        self._course, self._programme, self._manner = course, programme, manner
+        self._first, self._short = first, 0
+        self._few = max(int(course.increment.settings.status.few * len(programme.normal)), 2)
+
+    def advanced(self, here: Trial) -> Trial:
+        """As in ``Method``."""
+        clock, system, increment = time.perf_counter(), self._programme.solver.system, self._course.increment
+        there = iterate(near(self._programme, here.here), self._manner)
+        if not np.isfinite(there.state.multipliers).all():
+            return Trial(there, here.status)
+        wanted = next_status(system, there.state.with_status(here.status), increment)
+        changed = points(system, wanted != here.status)
+        now = there.state.with_status(wanted)
+        self._course.add(now, changed, clock)
+        close = near(self._programme, there).missed <= largest_pressure(there.state, increment)
+        if close:
+            there = replace(there, dilatancy=_faded(there.dilatancy, increment.settings))
+        if np.abs(there.state.multipliers).max() < increment.settings.newton.rounding * self._first:
+            return Trial(there, wanted, _apart(self._course, self._programme, now), apart=True)
+        found = None
+        if close and changed <= self._few and not there.dilatancy:
+            try:
+                found = slid(self._course, now, increment.settings.newton.solutions)
+            except SingularModelError:
+                found = None
+        return Trial(there, wanted, found)
+
+    def ended(self, there: Trial) -> End | None:
+        """As in ``Method``."""
+        if there.found is not None:
+            return End.SOLVED
+        if there.apart or not np.isfinite(there.here.state.multipliers).all():
+            return End.STALLED
+        settings, least = self._course.increment.settings, largest_pressure(there.here.state, self._course.increment)
+        self._short = self._short + 1 if there.here.length < 0.05 else 0
+        mean = near(self._programme, there.here).mean
+        if self._short > settings.newton.patience or mean < settings.interior.floor * least**2:
+            return End.STALLED
+        return None
+
+
+def _by_cones(course: Course, state: State, manner: Manner, limit: int) -> Found | None:
+    programme = Programme.of(course.solver, course.increment.settings)
+    here = begin(programme, state, manner)
+    method = InteriorSliding(course, programme, manner, float(np.abs(here.state.multipliers).max()))
+    return newton(method, Trial(here, np.where(programme.solver.system.tied, CLOSED, OPEN)), limit)[0].found
+
+
+def _faded(dilatancy: float, settings: Settings) -> float:
+    """What is left of it by an iteration close to what gaps and slips are to be."""
+    return settings.interior.fade * dilatancy if dilatancy > settings.interior.met else 0.0
+
+
+def _apart(course: Course, programme: Programme, state: State) -> Found | None:
+    """A state in which nothing touches, if it is one: where bodies are then makes no difference."""
+    clock, system = time.perf_counter(), programme.solver.system
+    state = replace(state, multipliers=np.zeros_like(state.multipliers), status=np.zeros_like(state.status))
+    size = system.unit * float(np.abs(state.unknowns).max(initial=0.0))
+    if system.tied.any() or system.gap(state)[programme.normal].min() < 0.0:
+        return None
+    if np.abs(system.unbalanced(state)).max(initial=0.0) > course.increment.settings.newton.balanced * size:
+        return None
+    course.add(state, 0, clock)
+    return course.found(state)

@@ -1,4 +1,4 @@
-"""Semi-smooth Newton on contact and slip together."""
+"""Semi-smooth Newton on contact and slip together, in whole steps; half spaces foresee where contact closes."""
 
 from __future__ import annotations
 
@@ -10,19 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.linear.solver import Prepared
-from abut.nonlinear.friction_foresight import advanced, foreseen
 from abut.nonlinear.friction_laws import Status, friction_laws, next_status
-from abut.nonlinear.iteration import (
-    Found,
-    Increment,
-    largest_pressure,
-    points,
-    report,
-)
+from abut.nonlinear.iteration import Found, Increment, advance, largest_force, largest_pressure, points, report
+from abut.nonlinear.newton import End, Method, newton
+from abut.problem.pair import Pair
 from abut.solution import Iteration
-from abut.solution.state import State
-
-Vector = NDArray[np.float64]
+from abut.solution.state import CLOSED, OPEN, State
 
 
 @dataclass
@@ -75,37 +68,104 @@ class Course:
         return Found(state, tuple(self.done), False, changing, friction_laws, between=between)
 
 
-def newton(course: Course, first: State, limit: int) -> Found | None:
-    """Semi-smooth Newton from a state and its status, in whole steps; None where it gives up.
+@dataclass(frozen=True)
+class Trial:
+    """What an iteration leaves. state: with the status to go on with; wanted: the status that laws ask for there; changed:
+    points whose status that changes; left: of laws and equilibrium."""
 
-    It does as soon as a status comes back, or nothing gets better any more."""
-    system, state = course.solver.system, first
-    seen: set[bytes] = set()
-    fewest, least, before, idle = len(first.status) + 1, np.inf, np.inf, 0
-    settings, asked = course.increment.settings.newton, course.increment.settings.accuracy
-    tolerance, accuracy = max(settings.balanced, course.solver.accurate), asked.rough
-    foreseen_other, last = False, 0
-    for _ in range(limit):
-        clock = time.perf_counter()
-        following = advanced(course.solver, state, friction_laws, course.increment, accuracy)
-        wanted = next_status(system, following, course.increment)
-        changed = points(system, wanted != state.status)
-        state = following.with_status(wanted)
-        left = course.add(state, changed, clock)
-        if not changed and (left <= tolerance or (left <= settings.stalled and left > 0.5 * before)):
-            return course.found(state)
-        better = changed < fewest or (changed == 0 and left < 0.5 * least)
-        idle = 0 if better else idle + 1
-        if idle >= settings.patience or (changed and wanted.tobytes() in seen):
-            return None
-        fewest, least = min(fewest, changed), min(least, left)
-        before = left if not changed else np.inf
-        accuracy = asked.rough if changed else max(asked.spare * tolerance / left, asked.stride)
-        seen.add(wanted.tobytes())
-        misled, foreseen_other = foreseen_other and changed >= last, False
-        last = changed
+    state: State
+    wanted: Status
+    changed: int
+    left: float
+
+
+class Sliding(Method[Trial]):
+    """Whole steps with the status that laws ask for; gives up as soon as a status comes back, or nothing gets better any
+    more."""
+
+    def __init__(self, course: Course) -> None:
+        self._course, self._settings = course, course.increment.settings
+        self._tolerance = max(self._settings.newton.balanced, course.solver.accurate)
+        self._accuracy = self._settings.accuracy.rough
+        self._fewest, self._least, self._before = np.inf, np.inf, np.inf
+        self._idle, self._last, self._foreseen_other = 0, 0, False
+        self._seen: set[bytes] = set()
+
+    def advanced(self, here: Trial) -> Trial:
+        """As in ``Method``."""
+        clock, course = time.perf_counter(), self._course
+        following = advanced(course.solver, here.state, course.increment, self._accuracy)
+        wanted = next_status(course.solver.system, following, course.increment)
+        changed = points(course.solver.system, wanted != here.state.status)
+        left = course.add(following.with_status(wanted), changed, clock)
+        return Trial(following, wanted, changed, left)
+
+    def ended(self, there: Trial) -> End | None:
+        """As in ``Method``."""
+        asked, changed, left = self._settings.newton, there.changed, there.left
+        if not changed and (left <= self._tolerance or (left <= asked.stalled and left > 0.5 * self._before)):
+            return End.SOLVED
+        better = changed < self._fewest or (changed == 0 and left < 0.5 * self._least)
+        self._idle = 0 if better else self._idle + 1
+        if self._idle >= asked.patience or (changed and there.wanted.tobytes() in self._seen):
+            return End.STALLED
+        return None
+
+    def followed(self, there: Trial) -> Trial:
+        """With the status that laws ask for, or a better guess where the last one was none worse."""
+        asked, changed, left, wanted = self._settings.accuracy, there.changed, there.left, there.wanted
+        self._fewest, self._least = min(self._fewest, changed), min(self._least, left)
+        self._before = left if not changed else np.inf
+        self._accuracy = asked.rough if changed else max(asked.spare * self._tolerance / left, asked.stride)
+        self._seen.add(wanted.tobytes())
+        misled, self._foreseen_other, self._last = self._foreseen_other and changed >= self._last, False, changed
+        status = wanted
         if changed and not misled:
-            status = foreseen(course.solver, following, wanted)
-            foreseen_other = not np.array_equal(status, wanted)
-            state = state.with_status(status)
-    return None
+            status = foreseen(self._course.solver, there.state, wanted)
+            self._foreseen_other = not np.array_equal(status, wanted)
+        return replace(there, state=there.state.with_status(status))
+
+
+def slid(course: Course, first: State, limit: int) -> Found | None:
+    """Newton's method from a state and its status on; None where it gives up."""
+    there, end = newton(Sliding(course), Trial(first, first.status, 0, np.inf), limit)
+    return course.found(there.state.with_status(there.wanted)) if end is End.SOLVED else None
+
+
+def advanced(solver: Prepared, state: State, increment: Increment, accuracy: float) -> State:
+    """The state after a Newton step. An iterative solver, asked for ``accuracy`` of the residual, goes on where forces are
+    so far from balance that the state says nothing."""
+    system, asked = solver.system, increment.settings.accuracy
+    for _ in range(1 if solver.exact else increment.settings.newton.patience):
+        state = advance(solver, state, friction_laws(system, state), accuracy)
+        left = float(np.abs(system.unbalanced(state)).max(initial=0.0))
+        left /= largest_force(system, state, system.internal(state), increment)
+        if left <= asked.told:
+            break
+        accuracy = float(np.clip(asked.told / left, asked.stride, asked.spare))
+    return state
+
+
+def foreseen(solver: Prepared, state: State, wanted: NDArray[np.int8]) -> NDArray[np.int8]:
+    """The status (n,) to go on with where the laws ask for ``wanted``: closed where half spaces without friction close, and
+    stuck where that is new. What of it slips only a solution tells. ``wanted`` itself where half spaces foresee that no more
+    closes than in ``state``, and the laws ask for more."""
+    pairs, split = solver.system.pairs, solver.system.split
+    beside = solver.system.join([_beside(pair) for pair in pairs]).astype(bool)
+    gap = solver.system.gap(state)
+    closed = split(solver.foresee(gap, state.multipliers, (wanted != OPEN) | beside, beside))
+    result = solver.system.join([_with(*part) for part in zip(pairs, split(wanted), closed)])
+    few, many = (int((part != OPEN).sum()) for part in (result, wanted))
+    return wanted if few <= int(state.closed.sum()) < many else result
+
+
+def _beside(pair: Pair) -> NDArray[np.bool_]:
+    """Multipliers that never open by themselves, (n,)."""
+    return np.arange(len(pair)) >= (0 if pair.two_way else len(pair.space))
+
+
+def _with(pair: Pair, wanted: NDArray[np.int8], closed: NDArray[np.bool_]) -> NDArray[np.int8]:
+    if pair.two_way:
+        return wanted
+    shut = np.asarray(pair.of_functions(closed[pair.normal]))
+    return np.where(shut, np.where(wanted == OPEN, CLOSED, wanted), OPEN)

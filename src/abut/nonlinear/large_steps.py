@@ -12,9 +12,8 @@ from abut.nonlinear.attempt import Attempt
 from abut.nonlinear.hanging import hanging
 from abut.nonlinear.holding import lifted, overcome
 from abut.nonlinear.march import Begin, Control
-from abut.nonlinear.one_step import Setting
+from abut.nonlinear.one_step import Setting, led_on, stabilised
 from abut.nonlinear.pace import Pace
-from abut.nonlinear.stabilised import led_on, stabilised
 from abut.nonlinear.unsettled import gives_way
 from abut.problem.problem import ContactProblem
 from abut.problem.stabilising import drag_of, is_dragged

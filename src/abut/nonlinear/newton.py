@@ -1,89 +1,68 @@
-"""Newton's method on a problem: linearise at the trial state, solve the contact problem that this makes, go on from its
-solution."""
+"""Newton's method: the one loop of the nonlinear solution.
+
+What it iterates on, and how, is a ``Method``:
+
+============================  ===================================  ==============================  =====================
+method                        linearised anew                      contact status                  globalised by
+============================  ===================================  ==============================  =====================
+``semismooth.LargeMotion``    geometry, material, contact          as laws ask at each state       line search, if asked
+``load_step.Bodies``          material                             a search of its own: one below  whole steps
+``active_set.ActiveSet``      the active set                       asked for, foreseen             ``search`` takes over
+``search.Polish``             the active set                       asked for                       gives up
+``search.InteriorContact``         products of pressures and gaps       where pressures win             inside their bounds
+``friction_newton.Sliding``   the status with friction             asked for, foreseen             ``friction`` takes over
+``friction.InteriorSliding``  products in second-order cones       where tractions win             inside their cones
+``smooth_laws.SmoothLaws``    laws that are functions of gaps      asked for of all other pairs    line search, softness
+============================  ===================================  ==============================  =====================
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import Protocol
+from enum import Enum
+from typing import Generic, TypeVar
 
-import numpy as np
-
-from abut.linear.solver import LinearSolver, Prepared
-from abut.nonlinear.exact import Aim
-from abut.nonlinear.iteration import Found, Increment, largest_force
-from abut.problem.frame import Frame
-from abut.problem.linearised import Linearised
-from abut.problem.problem import Problem
-from abut.solution import Iteration
-from abut.solution.state import State
+Trial = TypeVar("Trial")
 
 
-class Search(Protocol):
-    """How the contact status of a linearised problem is found, as ``abut.nonlinear.active_set.solve_step`` does."""
+class End(Enum):
+    """Why iterations have ended."""
 
-    def __call__(
-        self, solver: Prepared, begin: State, increment: Increment, limit: int, observe: Callable[[Iteration], None],
-        earlier: Sequence[Iteration] = (), aim: Aim = "solution", settle: bool = False,
-    ) -> Found: ...  # fmt: skip
-
-
-@dataclass(frozen=True)
-class Task:
-    """A load step to solve. before: the last converged state; limit: of iterations; observe: called with each of them;
-    search: for the contact status; given: a frame other than that which begins there."""
-
-    problem: Problem
-    before: State
-    solver: LinearSolver
-    increment: Increment
-    limit: int
-    observe: Callable[[Iteration], None]
-    search: Search
-    given: Frame | None = None
-
-    @cached_property
-    def frame(self) -> Frame:
-        """What is fixed during the step: ``given``, or that which begins at ``before``."""
-        return self.problem.frame(self.before) if self.given is None else self.given
+    SOLVED = "forces and laws are met"
+    STALLED = "they go round in a circle, or no longer get better"
+    EXHAUSTED = "as many as were allowed have been made"
 
 
-def newton(
-    task: Task,
-    guess: State,
-    previous: Prepared | None,
-    earlier: Sequence[Iteration] = (),
-    aim: Aim = "solution",
-    settle: bool = False,
-) -> tuple[Found, Prepared]:
-    """The state at the end of a load step, from ``guess`` on, and the linear solver as it was last set up.
+class Method(Generic[Trial]):
+    """How an iteration is made, the contact status chosen, a step globalised, and when it has all come to an end. ``Trial``
+    is what an iteration leaves: a state, the status that laws ask for there, and what is left open."""
 
-    A constant problem is linearised once: what remains is the search for the contact status. Any other one is linearised
-    anew at each state that this search finds, until its forces are in balance there. earlier, aim, settle: as for
-    ``Search``."""
-    problem, solver, settings = task.problem, task.solver, task.increment.settings.newton
-    system = problem.linearise(task.before, task.frame, guess)
-    prepared = solver.prepare(system, previous)
-    found = task.search(prepared, guess, task.increment, task.limit, task.observe, earlier, aim, settle)
-    error, near = np.inf, problem.constant
-    while found.converged and not problem.constant:
-        system = problem.linearise(task.before, task.frame, found.state)
-        before, error = error, _unbalanced(system, found.state, task.increment)
-        if error <= settings.balanced or (error <= settings.stalled and error > 0.5 * before):
-            near = True
-            break
-        left = task.limit - len(found.iterations) + len(earlier)
-        if left <= 0 or not np.isfinite(error):
-            return replace(found, converged=False), prepared
-        prepared = solver.prepare(system, prepared)
-        found = task.search(
-            prepared, found.state, task.increment, left, task.observe, found.iterations, aim, settle=True
-        )
-    return replace(found, system=system if near else None), prepared
+    def advanced(self, here: Trial) -> Trial:
+        """The linear system near a trial, solved with the status to go on with; and what its solution leaves open."""
+        raise NotImplementedError
+
+    def globalised(self, here: Trial, there: Trial) -> Trial:
+        """The whole step from ``here`` to ``there``, unless a method takes a part of it that leaves less."""
+        return there
+
+    def ended(self, there: Trial) -> End | None:
+        """Why iterations end with a trial; None: they go on."""
+        raise NotImplementedError
+
+    def followed(self, there: Trial) -> Trial | None:
+        """The trial with the status to go on with; None where no status is worth another iteration."""
+        return there
 
 
-def _unbalanced(system: Linearised, state: State, increment: Increment) -> float:
-    internal = system.internal(state)
-    largest = largest_force(system, state, internal, increment)
-    return float(np.abs(system.relative(system.unbalanced(state, internal), largest)).max(initial=0.0))
+def newton(method: Method[Trial], begin: Trial, limit: int) -> tuple[Trial, End]:
+    """The last trial of at most ``limit`` iterations from ``begin`` on, and why they end there."""
+    here = there = begin
+    for _ in range(limit):
+        there = method.globalised(here, method.advanced(here))
+        end = method.ended(there)
+        if end is not None:
+            return there, end
+        following = method.followed(there)
+        if following is None:
+            return there, End.STALLED
+        here = following
+    return there, End.EXHAUSTED

@@ -1,4 +1,7 @@
-"""One load step at large displacements: what belongs to its functions, solved, and once more with those of its end."""
+"""One load step at large displacements: what belongs to its functions, solved, and once more with those of its end.
+
+One that Newton's method cannot follow is led by a drag on all motion until all is at rest again: bodies that jump to another
+equilibrium, or that hardly anything holds; theory (G23)."""
 
 from __future__ import annotations
 
@@ -8,17 +11,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from abut.linear.solver import LinearSolver
-from abut.nonlinear.attempt import Attempt
-from abut.nonlinear.drag import Drag
+from abut.nonlinear.attempt import UNSTEADY, Attempt
+from abut.nonlinear.drag import Drag, scale
+from abut.nonlinear.holding import loosely_held
 from abut.nonlinear.iteration import Found, Increment
+from abut.nonlinear.pace import Pace
 from abut.nonlinear.semismooth import Step, largest_of, solve_finite
 from abut.nonlinear.settings import DEFAULT, Settings
 from abut.problem.balance import Balance
 from abut.problem.problem import ContactProblem
+from abut.problem.stabilising import drag_of, with_drag
 from abut.solution import Iteration
 from abut.solution.state import State
 
-UNSTEADY = "the fluid spreads on with every solution"
 AGAIN = 1  # times that a step is solved with the frame that belongs to its end, where that is another one
 
 
@@ -84,3 +89,110 @@ def _ended(step: Step, found: Found, time: float) -> Attempt:
         step.increment.number, state, found.converged, found.iterations, found.cycling, none, time, step.failed,
         balance=balance,
     )  # fmt: skip
+
+
+@dataclass
+class Strength:
+    """Of a drag from part to part. share: of the stiffness, at most ``change`` times and
+    at least half of it by ``settings``; fall: by which it falls next, 1 after a part that failed and
+    twice as much after each easy one; failed: whether one has."""
+
+    share: float
+    settings: Settings
+    fall: float
+    failed: bool = False
+
+    def grow(self) -> bool:
+        """After a part that failed; whether it may."""
+        self.share, self.fall, self.failed = self.share * 0.5 * self.settings.drag.change, 1.0, True
+        return self.share <= self.settings.drag.greatest
+
+    def ease(self, iterations: int) -> None:
+        """After one that took so many."""
+        easy = self.settings.steps.easy
+        if iterations <= (easy if self.failed else easy // 2):
+            self.share = max(self.share / self.fall, self.settings.newton.balanced)
+            self.fall = min(2.0 * self.fall, self.settings.drag.change)
+
+
+@dataclass(frozen=True)
+class Led:
+    """Attempts at a step: its parts, the last of them at rest; or the one that failed and that nothing follows."""
+
+    attempts: tuple[Attempt, ...]
+    began: bool = True  # whether any part has converged
+
+    @property
+    def converged(self) -> bool:
+        """Whether they are its parts."""
+        return self.attempts[-1].converged
+
+
+def strides(settings: Settings) -> tuple[float, float]:
+    """Of the way to the next goal, that are tried under a drag."""
+    longest = settings.steps.smallest**0.5
+    return longest, longest / 8.0
+
+
+def led_on(setting: Setting, before: State, pace: Pace) -> Led:
+    """A step from the converged state ``before``, where no step without a drag is short enough; ``pace`` goes on with its
+    length."""
+    for share in strides(setting.settings):
+        pace.stride(share)
+        assert pace.end is not None
+        led = stabilised(setting, before, pace.end)
+        if led.converged or led.began:
+            break
+    return led
+
+
+def stabilised(setting: Setting, before: State, time: float) -> Led:
+    """The step from the converged state ``before`` to ``time`` in parts, each with a drag on the way since the one before:
+    backward Euler steps of a motion without inertia."""
+    settings, asked = setting.settings, setting.settings.drag
+    problem, setting = setting.problem, replace(setting, limit=min(2 * settings.steps.easy, setting.limit))
+    size, most = scale(problem.again(before, before)), 0.0
+    begin = asked.first if not drag_of(before).any() else asked.first * asked.slow
+    strength = Strength(begin, settings, asked.change)
+    here, parts, spent = before, list[Attempt](), tuple[Iteration, ...]()
+    part, why = None, "bodies do not come to rest"
+    for _ in range(asked.parts):
+        drag = Drag(strength.share * size, here.unknowns)
+        part = setting.attempted(here, here if parts else None, time, drag=drag)
+        spent += part.iterations
+        if not part.converged:
+            if strength.grow():
+                continue
+            why = part.reason
+            break
+        force = drag.force(part.state.unknowns)
+        here = with_drag(part.state, force)
+        parts.append(replace(part, state=here, iterations=spent, whole=False))
+        spent = ()
+        if is_gone(problem, before, here, settings.holding.gone):
+            why = "bodies move on and on: the loads are more than what they act on can carry"
+            break
+        left = float(np.abs(force).max(initial=0.0)) / here.largest.force
+        most = max(most, left)
+        assert part.balance is not None
+        loose = loosely_held(problem, part.balance, here, settings.holding.weak)
+        if loose and left <= settings.newton.balanced:
+            return Led((*parts[:-1], replace(parts[-1], whole=True)))
+        least = strength.share <= settings.newton.balanced
+        if (
+            not loose and left < asked.slow and (left < 10.0 * asked.slow * most or least)
+        ):  # at the outset bodies are slow, too
+            last = setting.attempted(here, here, time)
+            spent += last.iterations
+            if last.converged:
+                return Led((*parts, replace(last, state=with_drag(last.state, 0.0 * force), iterations=spent)))
+        strength.ease(len(part.iterations))
+    assert part is not None
+    why = f"under a drag on all motion {why}"
+    return Led((replace(part, iterations=spent or part.iterations, converged=False, reason=why),), bool(parts))
+
+
+def is_gone(problem: ContactProblem, before: State, here: State, sizes: float) -> bool:
+    """Whether something has moved beyond all that loads of a model may mean."""
+    way = problem.displacement(here) - problem.displacement(before)
+    return bool(np.abs(way).max() > sizes * np.ptp(problem.model.mesh.points, axis=0).max())

@@ -14,13 +14,23 @@ from abut.errors import SingularModelError, Unsound
 from abut.linear.solver import LinearSolver, Prepared
 from abut.nonlinear.drag import Drag, dragged
 from abut.nonlinear.exchange import exchanged
-from abut.nonlinear.finite_laws import Asked, barely_covered, laws_of, left_open, status_of, wanted_status
+from abut.nonlinear.finite_laws import (
+    Asked,
+    barely_covered,
+    following_status,
+    laws_of,
+    left_open,
+    nearest_kept,
+    status_of,
+    wanted_status,
+    without_pulling,
+)
 from abut.nonlinear.forcing import forcing
 from abut.nonlinear.friction_laws import friction_laws
 from abut.nonlinear.holding import not_adrift, resisting, sticking
 from abut.nonlinear.iteration import Found, Increment, advance, largest_force, largest_pressure, part_of, points
 from abut.nonlinear.line_search import shortened
-from abut.nonlinear.opening import following_status, nearest_kept, without_pulling
+from abut.nonlinear.newton import End, Method, newton
 from abut.nonlinear.settings import NOTHING, Settings
 from abut.nonlinear.smallest import smallest, yielding
 from abut.nonlinear.unsettled import circling, most_at
@@ -149,43 +159,70 @@ def _solved_again(step: Step, asked: Asked, guess: State | None, time: float) ->
 
 
 def _newton(step: Step, guess: State | None, time: float) -> Trial:
-    closings = np.zeros(len(step.before.status), dtype=np.int64)
-    begun, before, errors = clocks.perf_counter(), np.inf, list[float]()
-    here = _balance(step, _carried(step, time) if guess is None else guess, guessed=guess is not None)
+    begun = clocks.perf_counter()
+    method = LargeMotion(step, begun)
+    here = _balance(step, _carried(step, time) if guess is None else guess, step.before, guessed=guess is not None)
     if guess is None:
-        begun = _report(step, here, begun)
-    if guess is not None or not _balanced(step, here, before):
-        state = nearest_kept(here.system, step.before, here.state, 0.1 * step.settings.holding.near)
-        here = here if state is here.state else replace(here, state=state, laws=laws_of(here.system, state, step.asked))
-    while guess is not None or not _balanced(step, here, before):
-        if circling(errors, step.settings) and not step.careful:
-            step.careful, errors = True, []
-        if len(step.done) >= step.limit or circling(errors, step.settings):
-            step.failed = _unsettled(step, here)
-            break
-        accuracy = forcing(here.error, before, step.settings)
-        following, swapped = _following(step, here, closings, accuracy)
+        method.begun = _report(step, here, begun)
+        if _balanced(step, here, np.inf):
+            return here
+    state = nearest_kept(here.system, step.before, here.state, 0.1 * step.settings.holding.near)
+    here = here if state is here.state else replace(here, state=state, laws=laws_of(here.system, state, step.asked))
+    there, end = newton(method, here, step.limit - len(step.done))
+    if end is not End.SOLVED and not step.failed:
+        step.failed = _unsettled(step, there)
+    return there
+
+
+class LargeMotion(Method[Trial]):
+    """The problem linearised at every state, with the status that its laws ask for there; by a line search where the step is
+    careful, as it becomes when iterations go round in a circle. begun: when the iteration was."""
+
+    def __init__(self, step: Step, begun: float) -> None:
+        self._step, self.begun = step, begun
+        self._closings = np.zeros(len(step.before.status), dtype=np.int64)
+        self._before, self._errors, self._swapped = np.inf, list[float](), False
+
+    def advanced(self, here: Trial) -> Trial:
+        """As in ``Method``."""
+        step = self._step
+        accuracy = forcing(here.error, self._before, step.settings)
+        following, self._swapped = _following(step, here, self._closings, accuracy)
         step.asked = replace(step.asked, by_pressure=False)
         there = _tried(step, here, following)
-        closings += there.state.closed & ~here.state.closed
-        if (step.careful and not swapped) or not np.isfinite(there.size):
-            there = _shortened(step, here, there)
+        self._closings += there.state.closed & ~here.state.closed
+        return there
+
+    def globalised(self, here: Trial, there: Trial) -> Trial:
+        """The whole step, or the part of it that a line search finds to be better."""
+        if (self._step.careful and not self._swapped) or not np.isfinite(there.size):
+            there = _shortened(self._step, here, there)
         if not np.isfinite(there.size):
-            step.failed = "forces are not finite"
-            break
-        before, here, guess = here.error, there, None
-        errors.append(here.error)
-        begun = _report(step, here, begun)
-    return here
+            self._step.failed = "forces are not finite"
+            return here
+        self._before = here.error
+        return there
+
+    def ended(self, there: Trial) -> End | None:
+        """As in ``Method``."""
+        step = self._step
+        if step.failed:
+            return End.STALLED
+        self._errors.append(there.error)
+        self.begun = _report(step, there, self.begun)
+        if _balanced(step, there, self._before):
+            return End.SOLVED
+        if circling(self._errors, step.settings):
+            if step.careful:
+                return End.STALLED
+            step.careful, self._errors = True, []
+        return None
 
 
 def _unsettled(step: Step, here: Trial) -> str:
     """Why iterations have ended without a solution."""
-    why = (
-        f"{step.limit} iterations were not enough"
-        if len(step.done) >= step.limit
-        else "iterations go round in a circle"
-    )
+    many = f"{step.limit} iterations were not enough"
+    why = many if len(step.done) >= step.limit else "iterations go round in a circle"
     most = most_at(step.problem, here.forces, here.broken)
     return (
         f"{why}: {here.force:.1e} of the forces, {here.law:.1e} of the laws, {most}, and "
@@ -254,9 +291,9 @@ def _carried(step: Step, time: float) -> State:
         state = other
 
 
-def _balance(step: Step, state: State, guessed: bool = False) -> Trial:
-    """The problem near a state, with the status that the laws ask for there."""
-    return _judged(step, step.problem.linearise(step.before, step.frame, state), state, guessed)
+def _balance(step: Step, state: State, since: State, guessed: bool = False) -> Trial:
+    """The problem near a state, reached from another one, with the status that the laws ask for there."""
+    return _judged(step, step.problem.linearise(step.before, step.frame, state, since, guessed), state, guessed)
 
 
 def _judged(step: Step, own: Linearised, state: State, guessed: bool = False) -> Trial:
@@ -282,7 +319,7 @@ def _tried(step: Step, here: Trial, state: State) -> Trial:
     """Near a trial state; under a drag without a size where a cell is beyond its material there, so that less of the way is
     tried."""
     try:
-        return _balance(step, state)
+        return _balance(step, state, here.state)
     except Unsound:
         if step.drag is None:
             raise

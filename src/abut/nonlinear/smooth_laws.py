@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -28,6 +28,7 @@ from abut.nonlinear.iteration import (
     report,
 )
 from abut.nonlinear.line_search import shortened
+from abut.nonlinear.newton import End, Method, newton
 from abut.problem.laws import LawRows, at_multipliers, in_the_mean
 from abut.problem.linearised import Linearised
 from abut.problem.problem import Laws
@@ -58,8 +59,8 @@ def finish_smooth(
         # The function is smoothed over a share of the largest pressure: without one it is the complementarity law.
         return exact
     smooth = Smooth(solver, increment, reference)
-    outcome = _newton(smooth, state, limit, done, observe, HARDEST)
-    return outcome if outcome.converged else _newton(smooth, state, limit, done, observe, SOFTEST)
+    outcome = _with(smooth, state, limit, done, observe, HARDEST)
+    return outcome if outcome.converged else _with(smooth, state, limit, done, observe, SOFTEST)
 
 
 @dataclass(frozen=True)
@@ -84,7 +85,91 @@ class Smooth:
         return np.asarray(np.abs(residual) / system.weight / self.reference)
 
 
-def _newton(
+@dataclass(frozen=True)
+class Trial:
+    """What an iteration leaves. violation: (n,) as in ``Smooth``, law_error and error: the largest of it and with what is
+    unbalanced, all of them before the iteration; laws: (n,) those then; unsettled: whether the status of pairs without a
+    smooth law has changed; shrinks: whether the line search has found less; singular: whether the linear system was."""
+
+    state: State
+    laws: Sequence[LawRows] = ()
+    violation: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
+    law_error: float = np.inf
+    error: float = np.inf
+    unbalanced: float = np.inf
+    unsettled: bool = True
+    shrinks: bool = True
+    singular: bool = False
+
+
+class SmoothLaws(Method[Trial]):
+    """Laws that begin as soft as told and harden as they are met, with a line search; gives up where that does. ``done``
+    grows."""
+
+    def __init__(
+        self, smooth: Smooth, done: list[Iteration], observe: Callable[[Iteration], None], softness: float
+    ) -> None:
+        self.smooth, self.softness = smooth, softness
+        self._done, self._observe = done, observe
+        self._tries, self._before, self._clock = 0, np.inf, 0.0
+        self._tolerance = max(smooth.increment.settings.newton.balanced, smooth.solver.accurate)
+        system = smooth.solver.system
+        self._tied, self._sharp, self._rubs = (
+            system.join([np.full(len(pair), flag(pair)) for pair in system.pairs]).astype(bool)
+            for flag in (lambda pair: pair.two_way, lambda pair: not pair.smooth, lambda pair: pair.frictional)
+        )
+
+    def advanced(self, here: Trial) -> Trial:
+        """As in ``Method``."""
+        self._clock = time.perf_counter()
+        solver, increment, state = self.smooth.solver, self.smooth.increment, here.state
+        laws = self.smooth.laws(self.softness)(solver.system, state)
+        violation = self.smooth.violation(laws)
+        law_error = float(violation.max(initial=0.0))
+        error = max(law_error, _unbalanced(solver.system, state, increment))
+        tried = replace(here, laws=laws, violation=violation, law_error=law_error, error=error)
+        try:
+            full = advance(solver, state, laws, forcing(error, self._before, increment.settings))
+        except SingularModelError:
+            return replace(tried, singular=True)
+        return replace(tried, state=full)
+
+    def globalised(self, here: Trial, there: Trial) -> Trial:
+        """The whole step, or what a line search leaves of it, with the status that is asked for there."""
+        if there.singular:
+            return there
+        smooth, system, increment = self.smooth, self.smooth.solver.system, self.smooth.increment
+        following, shrinks = _line_search(smooth, here.state, there.state, smooth.laws(self.softness))
+        self._before = there.error
+        closed = np.where(system.join([law.closed for law in there.laws]).astype(bool), CLOSED, OPEN)
+        wanted = _wanted(system, following, increment, self._tied)
+        changed = (status := np.where(self._sharp | self._rubs, wanted, closed)) != here.state.status
+        state, seconds = following.with_status(status), time.perf_counter() - self._clock
+        row = report(system, state, increment, len(self._done) + 1, int(changed.sum()), np.zeros(1), seconds)
+        self._done.append(replace(row, contact_residual=there.law_error))
+        self._observe(self._done[-1])
+        unsettled = bool(changed[self._sharp].any())
+        return replace(there, state=state, unbalanced=row.residual, unsettled=unsettled, shrinks=shrinks)
+
+    def ended(self, there: Trial) -> End | None:
+        """As in ``Method``."""
+        if there.singular:  # a body that nothing presses on, and rounding, which is all that is left, would move it
+            met = self.softness == HARDEST and there.error < self._tolerance and not there.unsettled
+            return End.SOLVED if met else End.STALLED
+        settings = self.smooth.increment.settings
+        if self.softness > HARDEST and there.law_error < settings.interior.met:
+            fades = self.softness > settings.accuracy.fine
+            self.softness, self._before = self.softness * settings.interior.fade if fades else HARDEST, np.inf
+        elif there.law_error < self._tolerance and there.unbalanced < self._tolerance and not there.unsettled:
+            return End.SOLVED
+        elif not there.shrinks:
+            self._tries += 1
+            if self._tries >= settings.newton.halvings:
+                return End.STALLED
+        return None
+
+
+def _with(
     smooth: Smooth,
     state: State,
     limit: int,
@@ -92,52 +177,14 @@ def _newton(
     observe: Callable[[Iteration], None],
     softness: float,
 ) -> Found:
-    """Newton with a line search, on laws that begin as soft as told and harden as they are met; gives up where the line
-    search does. ``done`` grows."""
-    solver, increment, settings = smooth.solver, smooth.increment, smooth.increment.settings
-    tolerance = max(settings.newton.balanced, solver.accurate)
-    system = solver.system
-    tied, sharp, rubs = (
-        system.join([np.full(len(pair), flag(pair)) for pair in system.pairs]).astype(bool)
-        for flag in (lambda pair: pair.two_way, lambda pair: not pair.smooth, lambda pair: pair.frictional)
-    )
-    before, violation, tries, unsettled = np.inf, np.zeros(len(state.status)), 0, True
-    for _ in range(limit):
-        clock = time.perf_counter()
-        laws = smooth.laws(softness)
-        near = laws(system, state)
-        violation = smooth.violation(near)
-        law_error = float(violation.max(initial=0.0))
-        error = max(law_error, _unbalanced(system, state, increment))
-        try:
-            following = advance(solver, state, near, forcing(error, before, settings))
-        except SingularModelError:
-            if softness == HARDEST and error < tolerance and not unsettled:
-                # A body that nothing presses on, and rounding, which is all that is left, would move it.
-                return Found(state, tuple(done), True, np.zeros(len(state.status), dtype=bool), laws)
-            break
-        following, found = _line_search(smooth, state, following, laws)
-        before = error
-        wanted = _wanted(system, following, increment, tied)
-        closed = np.where(system.join([law.closed for law in near]).astype(bool), CLOSED, OPEN)
-        status = np.where(sharp | rubs, wanted, closed)
-        changed = int((status != state.status).sum())
-        unsettled = bool((status != state.status)[sharp].any())
-        state = following.with_status(status)
-        row = report(system, state, increment, len(done) + 1, changed, np.zeros(1), time.perf_counter() - clock)
-        row = replace(row, contact_residual=law_error)
-        done.append(row)
-        observe(row)
-        if softness > HARDEST and law_error < settings.interior.met:
-            softness, before = (
-                (softness * settings.interior.fade if softness > settings.accuracy.fine else HARDEST),
-                np.inf,
-            )
-        elif law_error < tolerance and row.residual < tolerance and not unsettled:
-            return Found(state, tuple(done), True, np.zeros(len(status), dtype=bool), laws)
-        elif not found and (tries := tries + 1) >= settings.newton.halvings:
-            break
-    return Found(state, tuple(done), False, violation > 0.1 * violation.max(initial=0.0), smooth.laws(HARDEST))
+    """Newton's method on laws that begin so soft."""
+    method = SmoothLaws(smooth, done, observe, softness)
+    there, end = newton(method, Trial(state), limit)
+    if end is End.SOLVED:
+        none = np.zeros(len(state.status), dtype=bool)
+        return Found(there.state, tuple(done), True, none, smooth.laws(method.softness))
+    broken = there.violation > 0.1 * there.violation.max(initial=0.0)
+    return Found(there.state, tuple(done), False, broken, smooth.laws(HARDEST))
 
 
 def _wanted(

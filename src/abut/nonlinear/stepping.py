@@ -10,13 +10,12 @@ import numpy as np
 from abut.linear.solver import LinearSolver, Prepared
 from abut.nonlinear.active_set import solve_step
 from abut.nonlinear.again import Again
-from abut.nonlinear.attempt import Attempt
+from abut.nonlinear.attempt import UNSTEADY, Attempt
 from abut.nonlinear.iteration import Increment
-from abut.nonlinear.load_step import load_step
+from abut.nonlinear.load_step import Task, load_step
 from abut.nonlinear.march import Begin, Control
-from abut.nonlinear.newton import Task
-from abut.nonlinear.one_step import UNSTEADY
 from abut.nonlinear.pace import Pace
+from abut.nonlinear.settings import Settings
 from abut.problem.problem import ContactProblem, Problem
 from abut.solution.state import State
 
@@ -35,7 +34,9 @@ class SmallSteps:
         if self._ready is None:
             self.prepare()
         assert self._ready is not None
-        return Again(self._ready[0], self._solver, self._ready[1], self._control.limit, self._control.settings)
+        return Again(
+            self._ready[0], self._solver, self._ready[1], self._control.limit, self._control.settings, solve_step
+        )
 
     def prepare(self) -> None:
         """As in ``Stepper``."""
@@ -88,3 +89,11 @@ class SmallSteps:
 
     def end(self) -> None:
         """As in ``Stepper``."""
+
+
+def prepared(problem: ContactProblem, solver: LinearSolver, state: State, settings: Settings) -> Again:
+    """Of a run that has not begun to solve; state: any of the problem."""
+    condensed = solver.condensed(problem)
+    system = condensed.linearise(state, condensed.frame(state), condensed.restrict(state))
+    limit = problem.model.solve.max_iterations
+    return Again(condensed, solver, solver.prepare(system, None), limit, settings, solve_step)

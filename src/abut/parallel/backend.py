@@ -17,6 +17,7 @@ from abut.contact.coupling import Coupling, CouplingOptions
 from abut.contact.coupling_tangent import ContactLoad, CouplingTangent
 from abut.contact.moving_normals import MovingNormals
 from abut.dofs import dofs_at, n_dofs
+from abut.materials.kernel import Since
 from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.parallel import part
@@ -137,6 +138,7 @@ class DistributedBodies:
         change: TemperatureChange,
         history: History | None = None,
         tangent: bool = True,
+        since: Since | None = None,
     ) -> Deformed:
         """As in ``Backend``."""
         kept = self.team.keep() if tangent else None
@@ -144,7 +146,10 @@ class DistributedBodies:
             part.deform,
             None if kept is None else kept.number,
             change.bodies,
-            per_rank=self._moved(displacement, change, history),
+            per_rank=[
+                (*moved, None if since is None else replace(since, displacement=since.displacement[piece.points]))
+                for moved, piece in zip(self._moved(displacement, change, history), self.pieces)
+            ],
         )
         self._require_sound(answers)
         force = self.summed([force for force, _, _ in answers], displacement.ravel())

@@ -15,6 +15,7 @@ from abut.bodies.evaluation import History
 from abut.bodies.inverted import Inverted
 from abut.bodies.solids import Solids, TemperatureChange
 from abut.bodies.stress import PointStress, point_stress
+from abut.materials.kernel import Since
 from abut.parallel.team import Store
 
 
@@ -69,9 +70,10 @@ def deform(
     displacement: NDArray[np.float64],
     nodal: NDArray[np.float64],
     history: History,
+    since: Since | None,
 ) -> tuple[NDArray[np.float64], float, History] | InsideOut:
-    """Nodal forces (dim n_points,), elastic energy and new history of this part; its tangent is kept under ``number``, None
-    for none."""
+    """Nodal forces (dim n_points,), elastic energy and new history of this part; since: as in ``respond``; its tangent is
+    kept under ``number``, None for none."""
     part: Solids = store["part"]
     n = part.mesh.points.size
     if not part.mesh.n_cells:
@@ -80,7 +82,7 @@ def deform(
         return np.zeros(n), 0.0, {}
     try:
         change = TemperatureChange(temperatures, nodal)
-        response = respond(part, displacement, change, history, number is not None)
+        response = respond(part, displacement, change, history, number is not None, since)
     except Inverted as error:
         return InsideOut(error.cell, error.body, error.determinant)
     if number is not None:

@@ -16,6 +16,7 @@ from abut.bodies.stress import PointStress, point_stress
 from abut.contact.coupling import Coupling, CouplingOptions, couple
 from abut.contact.coupling_tangent import ContactLoad, CouplingTangent, differentiated
 from abut.contact.moving_normals import MovingNormals
+from abut.materials.kernel import Since
 from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.problem.constraints import Constraints
@@ -61,8 +62,10 @@ class Backend(Tangent, Protocol):
         change: TemperatureChange,
         history: History | None = None,
         tangent: bool = True,
+        since: Since | None = None,
     ) -> Deformed:
-        """At displacements (n_points, dim), after a history. Raises ``abut.bodies.inverted.Inverted``."""
+        """At displacements (n_points, dim), after a history; since: as in ``abut.bodies.assemble.respond``.
+        Raises ``abut.bodies.inverted.Inverted``."""
         ...
 
 
@@ -104,9 +107,10 @@ class Serial:
         change: TemperatureChange,
         history: History | None = None,
         tangent: bool = True,
+        since: Since | None = None,
     ) -> Deformed:
         """As in ``Backend``."""
-        response = respond(self.model.deformable, displacement, change, history, tangent)
+        response = respond(self.model.deformable, displacement, change, history, tangent, since)
         slope = Serial(self.model, response.tangent) if tangent else None
         return Deformed(response.force, slope, float(response.energy.sum()), response.history)
 

@@ -67,7 +67,8 @@ class SolidBodies:
 
     def evaluate(self, before: Motion, now: Motion) -> Share:
         """As in ``Term``."""
-        deformed = self.backend.deform(*self._at(now, before.history))
+        since = None if self.model.small_strains else now.since
+        deformed = self.backend.deform(*self._at(now, before.history), since=since)
         symmetric = is_symmetric(self.model.deformable)
         energy = None if self.model.small_strains else deformed.energy
         return Share(deformed.force, deformed.tangent, deformed.history, symmetric, energy)

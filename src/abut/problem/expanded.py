@@ -11,6 +11,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.materials.kernel import Since
 from abut.model.conditions import weights
 from abut.problem.discretised import Discretised, stacked, unit_of
 from abut.problem.frame import Frame
@@ -24,14 +25,27 @@ SLIGHT = 1e-5  # strain of a cell whose forces are at least what others are judg
 Array = NDArray[np.float64]
 
 
-def expanded(problem: Discretised, before: State, frame: Frame, now: State, here: Array, change: Array) -> Linearised:
+def expanded(
+    problem: Discretised,
+    before: State,
+    frame: Frame,
+    now: State,
+    here: Array,
+    change: Array,
+    since: State | None = None,
+    guessed: bool = False,
+) -> Linearised:
     """Near values ``here`` (n_values,) of all fields; change: of all of them, without which ``here`` is at an earlier
-    time."""
+    time; since, guessed: as in ``ContactProblem.linearise``."""
     factors = weights(problem.model.histories, now.time)
     there = weights(problem.model.histories, before.time) if change.any() else factors
     constraints = problem.constraints.near(now.unknowns, there)
     began, contacts = problem.values(before), list[ContactNow]()
-    shares = problem.shares(before, problem.motion(before.time, began), problem.motion(now.time, here), frame)
+    motion = problem.motion(now.time, here)
+    if since is not None:
+        began_at = problem.displacement(since).reshape(problem.model.mesh.points.shape)
+        motion = replace(motion, since=Since(np.ascontiguousarray(began_at), guessed))
+    shares = problem.shares(before, problem.motion(before.time, began), motion, frame)
     n = constraints.free.shape[0]
     assert problem.kinematics is not None
     for kind, part, placed in zip(problem.kinematics, frame.pairs, problem.placed(now)):

@@ -101,12 +101,14 @@ class ContactProblem(Discretised):
         object where none do."""
         return state if self.kinematics is None else load_steps.handed(self, state, old, new)
 
-    def linearise(self, before: State, frame: Frame, now: State) -> Linearised:
-        """As in ``Problem``. A constant problem is affine everywhere: it is expanded about zero displacement, whose forces
-        have no rounding."""
+    def linearise(
+        self, before: State, frame: Frame, now: State, since: State | None = None, guessed: bool = False
+    ) -> Linearised:
+        """As in ``Problem``; since: from which an iteration, or a guess, led to ``now``, theory (D24). A
+        constant problem is affine everywhere: it is expanded about zero displacement, whose forces have no rounding."""
         if self.kinematics is not None:
             here = self.values(now)
-            return expanded(self, before, frame, now, here, np.zeros_like(here))
+            return expanded(self, before, frame, now, here, np.zeros_like(here), since, guessed)
         if self.constant:
             rest = np.zeros(self.n_free)
             before, now = replace(before, unknowns=rest), replace(now, unknowns=rest)

@@ -9,6 +9,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.materials.kernel import Since
 from abut.problem.constraints import Constraints
 from abut.problem.wet import Wet
 from abut.types import Operator, Sparse
@@ -46,13 +47,15 @@ class MatrixTangent:
 @dataclass(frozen=True)
 class Motion:
     """What a term sees of a state. displacement: (dim n_points,) of all points; history: the term's, by part, empty at the
-    start; fields: others by name, (places, components); wet: how far fluids have got into contacts, in turn."""
+    start; fields: others by name, (places, components); wet: how far fluids have got into contacts, in turn; since: from
+    where Newton's method came, None: from nowhere."""
 
     time: float
     displacement: Vector
     history: Mapping[str, Vector] = field(default_factory=dict)
     fields: Mapping[str, Vector] = field(default_factory=dict)
     wet: Sequence[Wet] = ()
+    since: Since | None = None
 
 
 @dataclass(frozen=True)
