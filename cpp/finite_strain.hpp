@@ -56,7 +56,7 @@ public:
       determinant = points[q].det;
       if (!(determinant > 0) || !std::isfinite(determinant))
         return false;
-      points[q].scale = cells.mean_dilatation ? root(centre.det / points[q].det) : 1;
+      points[q].scale = cells.mean_dilatation ? std::pow(centre.det / points[q].det, 1.0 / SCALED) : 1;
     }
     return true;
   }
@@ -134,10 +134,7 @@ public:
   }
 
   // Adds what is left once all points are in: nodes whose equal displacement does not strain the cell.
-  void complete(bool half, double *block) const {
-    if (added() < n)
-      complete_last_node<dim>(n, half, block);
-  }
+  void complete(bool half, double *block) const { complete_from<dim>(added(), n, half, block); }
 
   // Turns a stress at point q into that of Cauchy.
   void to_cauchy(std::size_t q, double *stress) const {
@@ -162,8 +159,6 @@ public:
 
 protected:
   static constexpr int SCALED = dim == 2 && !axisymmetric ? 2 : 3; // directions that F-bar scales
-
-  static double root(double value) { return SCALED == 2 ? std::sqrt(value) : std::cbrt(value); }
 
   // Nodes, from the first on, whose stiffness is integrated.
   std::size_t added() const { return axisymmetric ? n : n - 1; }
@@ -281,30 +276,21 @@ protected:
   };
 
   static void linearise(const Deformed &at, double w, const double *c, Moduli &result) {
-    constexpr int WIDE = 4;                        // rows of three and a zero are added two at a time
-    double half[STRAINS][dim][WIDE], f[dim][WIDE]; // w times the second stress by the slope, [s][d][c]; f transposed
-    for (int p = 0; p < dim; ++p)
-      for (int a = 0; a < WIDE; ++a)
-        f[p][a] = a < dim ? w * at.f[a][p] : 0;
+    double half[STRAINS][dim][dim] = {{{0}}}; // w times the second stress by the slope, [s][d][c]
     for (int s = 0; s < STRAINS; ++s)
       for (int d = 0; d < dim; ++d)
-        for (int a = 0; a < WIDE; ++a) {
-          double sum = 0;
+        for (int a = 0; a < dim; ++a)
           for (int p = 0; p < dim; ++p)
-            sum += c[s * STRAINS + AT[p][d]] * f[p][a];
-          half[s][d][a] = sum;
-        }
+            half[s][d][a] += w * c[s * STRAINS + AT[p][d]] * at.f[a][p];
     for (int d = 0; d < dim; ++d)
       for (int b = 0; b < dim; ++b)
-        for (int a = 0; a < dim; ++a) {
-          double row[WIDE];
-          for (int e = 0; e < WIDE; ++e) {
-            row[e] = at.f[a][0] * half[AT[0][b]][d][e];
-            for (int p = 1; p < dim; ++p)
-              row[e] += at.f[a][p] * half[AT[p][b]][d][e];
+        for (int a = 0; a < dim; ++a)
+          for (int e = 0; e < dim; ++e) {
+            double sum = 0;
+            for (int p = 0; p < dim; ++p)
+              sum += at.f[a][p] * half[AT[p][b]][d][e];
+            result.plane[d][b][a][e] = sum;
           }
-          std::copy_n(row, dim, result.plane[d][b][a]);
-        }
     if constexpr (axisymmetric) {
       const double out = at.f[2][2];
       for (int d = 0; d < dim; ++d)

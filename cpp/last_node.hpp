@@ -33,4 +33,10 @@ template <int dim> void complete_last_node(std::size_t n, bool half, double *blo
       corner[m] -= at(k, last)[m];
 }
 
+// The same where ``added`` nodes are in: all of them, or all but the last.
+template <int dim> void complete_from(std::size_t added, std::size_t n, bool half, double *block) {
+  if (added < n)
+    complete_last_node<dim>(n, half, block);
+}
+
 } // namespace abut
