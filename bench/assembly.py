@@ -23,6 +23,7 @@ from abut.bodies.assemble import respond, stiffness
 from abut.bodies.solids import Solids
 from abut.materials.elastic import LinearElastic
 from abut.materials.plastic import Plastic
+from abut.materials.rubber import MooneyRivlin
 from abut.mesh.make import box
 
 YOUNG, POISSON = 210e3, 0.3
@@ -52,18 +53,22 @@ def seconds(call: Callable[[], object], repeat: int) -> float:
     return statistics.median(times)
 
 
-def flowing(n: int, elastic: Solids, repeat: int) -> None:
-    """Force and tangent of metal that yields at every point, and the stiffness of the same cells, patterns known before."""
+def nonlinear(n: int, elastic: Solids, repeat: int) -> None:
+    """Force and tangent of metal that yields at every point and of rubber, and the stiffness of the same cells, patterns
+    known before."""
     mesh = elastic.mesh
-    moved = 0.01 * mesh.points * [1.0, -0.5, -0.5]
+    moved = 0.01 * mesh.points * [1.0, -0.5, -0.5] + 0.002 * np.sin(3.0 * mesh.points[:, [1, 2, 0]])
     linear = seconds(lambda: stiffness(elastic), repeat)
-    for rule in ("full", "b-bar"):
-        yields = Solids(mesh, {"body": Plastic(YOUNG, POISSON, 300.0, 1000.0)}, integration={"body": rule})
-        yields.pattern  # noqa: B018
-        both = seconds(lambda yields=yields: respond(yields, moved), repeat)
-        print(
-            f"{n**3} hex8 {rule}: stiffness {linear:.2f} s, plastic force and tangent {both:.2f} s: {both / linear:.2f}"
-        )
+    metal, rubber = Plastic(YOUNG, POISSON, 300.0, 1000.0), MooneyRivlin(c10=1.0, c01=0.5, bulk=1000.0)
+    for law, kinematics in ((metal, "small"), (metal, "finite"), (rubber, "finite")):
+        for rule in ("full", "b-bar"):
+            bodies = Solids(mesh, {"body": law}, integration={"body": rule}, kinematics=kinematics)
+            bodies.pattern  # noqa: B018
+            both = seconds(lambda bodies=bodies: respond(bodies, moved), repeat)
+            print(
+                f"{n**3} hex8 {rule}, {type(law).__name__}, {kinematics}: stiffness {linear:.2f} s, force and tangent "
+                f"{both:.2f} s: {both / linear:.2f}"
+            )
 
 
 def main() -> None:
@@ -76,7 +81,7 @@ def main() -> None:
     material = {"body": LinearElastic(YOUNG, POISSON)}
     solids = Solids(mesh, material)
     ours = seconds(lambda: stiffness(Solids(mesh, material)), arguments.repeat)
-    flowing(n, solids, arguments.repeat)
+    nonlinear(n, solids, arguments.repeat)
     theirs = seconds(lambda: with_scikit_fem(n), 1)
     print(f"{n**3} hex8: abut {ours:.2f} s (pattern and values), scikit-fem {theirs:.2f} s, ratio {theirs / ours:.0f}")
 

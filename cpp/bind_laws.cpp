@@ -1,6 +1,6 @@
 // Laws at points for Python: objects that evaluate strains, and integrate cells.
 #include "cell_arrays.hpp"
-#include "point_material.hpp"
+#include "heated_material.hpp"
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
@@ -42,6 +42,30 @@ Dense respond_at(const Law &law, bool logarithmic, double *strain, const double 
                      : PointMaterial<Law, false>{law, false}.respond(strain, before, after, stress);
 }
 
+// What integrates a law with histories (cells q, h), by material.operator()<logarithmic>(before, after).
+struct Histories {
+  std::size_t numbers; // of a point
+  std::optional<Matrix<double>> before;
+  std::optional<Output<2>> after;
+};
+
+template <class Make>
+Failure integrate_with_history(const CellArrays &cells, bool finite, const State &state, const Histories &histories,
+                               Results results, std::optional<Output<1>> energy, const Make &material) {
+  const std::size_t points = cells.integration_points(), h = histories.numbers;
+  const auto &[numbers, before, after] = histories;
+  if ((before && (before->shape(0) != points || before->shape(1) != h)) ||
+      (after && (after->shape(0) != points || after->shape(1) != h)) || (energy && energy->shape(0) != cells.count()))
+    throw nb::value_error("integration points and histories or energies disagree");
+  if (!state.displacement)
+    throw nb::value_error("laws at points need displacements");
+  results.energy = energy ? energy->data() : nullptr;
+  const double *old = before && h ? before->data() : nullptr;
+  double *now = after && h ? after->data() : nullptr;
+  return told(finite ? cells.integrate<FiniteStrain>(state, material.template operator()<true>(old, now), results)
+                     : cells.integrate<SmallStrain>(state, material.template operator()<false>(old, now), results));
+}
+
 // A law under small strains, or in the space of logarithmic ones.
 class PointLaw {
 public:
@@ -74,21 +98,11 @@ public:
                     std::optional<Output<2>> force, std::optional<Tangent> tangent, std::optional<Output<2>> stress,
                     std::optional<Output<1>> energy, std::optional<Output<2>> after,
                     std::optional<Matrix<double>> earlier, bool guessed) const override {
-    const std::size_t points = cells.integration_points(), h = law.history;
-    if ((before && (before->shape(0) != points || before->shape(1) != h)) ||
-        (after && (after->shape(0) != points || after->shape(1) != h)) || (energy && energy->shape(0) != cells.count()))
-      throw nb::value_error("integration points and histories or energies disagree");
-    if (!displacement)
-      throw nb::value_error("laws at points need displacements");
-    Results results = cells.results(force, tangent, stress);
-    results.energy = energy ? energy->data() : nullptr;
-    const State state = cells.state(displacement, thermal, earlier, guessed);
-    const double *old = before && h ? before->data() : nullptr;
-    double *now = after && h ? after->data() : nullptr;
-    const Unsound unsound =
-        finite ? cells.integrate<FiniteStrain>(state, PointMaterial<Law, true>{law, plane_stress, old, now}, results)
-               : cells.integrate<SmallStrain>(state, PointMaterial<Law, false>{law, plane_stress, old, now}, results);
-    return told(unsound);
+    return integrate_with_history(cells, finite, cells.state(displacement, thermal, earlier, guessed),
+                                  {law.history, before, after}, cells.results(force, tangent, stress), energy,
+                                  [&]<bool logarithmic>(const double *old, double *now) {
+                                    return PointMaterial<Law, logarithmic>{law, plane_stress, old, now};
+                                  });
   }
 
 private:
@@ -131,6 +145,23 @@ static Answer evaluate_over_temperature(const J2OverTemperature &law, Matrix<dou
                    });
 }
 
+static Failure integrate_over_temperature(const J2OverTemperature &law, const CellArrays &cells, bool finite,
+                                          bool plane_stress, std::optional<Matrix<double>> displacement,
+                                          Vector<double> temperature, Vector<double> swelling,
+                                          std::optional<Matrix<double>> before, std::optional<Output<2>> force,
+                                          std::optional<Tangent> tangent, std::optional<Output<2>> stress,
+                                          std::optional<Output<1>> energy, std::optional<Output<2>> after) {
+  const std::size_t points = cells.integration_points();
+  if (temperature.shape(0) != points || swelling.shape(0) != points)
+    throw nb::value_error("integration points and temperatures disagree");
+  return integrate_with_history(cells, finite, cells.state(displacement, std::nullopt, std::nullopt, false),
+                                {law.history(), before, after}, cells.results(force, tangent, stress), energy,
+                                [&]<bool logarithmic>(const double *old, double *now) {
+                                  return HeatedMaterial<J2OverTemperature, logarithmic>{
+                                      law, plane_stress, temperature.data(), swelling.data(), old, now};
+                                });
+}
+
 static std::unique_ptr<PointLaw> stretches(std::vector<double> terms, std::vector<double> powers,
                                            std::vector<double> volume) {
   if (terms.size() % 2 || volume.empty())
@@ -157,7 +188,13 @@ void bind_laws(nb::module_ &m) {
                                 "Von Mises plasticity whose constants depend on the temperature.")
       .def_prop_ro("history", &J2OverTemperature::history, "Numbers in the history of a point.")
       .def("evaluate", &evaluate_over_temperature, nb::arg("strain").noconvert(), nb::arg("before").noconvert(),
-           nb::arg("temperature").noconvert(), nb::arg("logarithmic"), "As of ``PointLaw``, at temperatures (n,).");
+           nb::arg("temperature").noconvert(), nb::arg("logarithmic"), "As of ``PointLaw``, at temperatures (n,).")
+      .def("integrate", &integrate_over_temperature, nb::arg("cells"), nb::arg("finite"), nb::arg("plane_stress"),
+           nb::arg("displacement").noconvert(), nb::arg("temperature").noconvert(), nb::arg("swelling").noconvert(),
+           nb::arg("before").noconvert() = nb::none(), nb::arg("force").noconvert() = nb::none(),
+           nb::arg("tangent").noconvert() = nb::none(), nb::arg("stress").noconvert() = nb::none(),
+           nb::arg("energy").noconvert() = nb::none(), nb::arg("after").noconvert() = nb::none(),
+           "As of ``PointLaw``; temperature, swelling: (cells q,) temperatures and thermal strains at the points.");
   m.def("j2_over_temperature", &j2_over_temperature, nb::arg("rows"),
         "Rows of temperature, growing, Young's modulus, Poisson's ratio, and as in ``j2`` table, slope, saturation, "
         "rate, "

@@ -2,6 +2,7 @@
 #pragma once
 #include "hyperelastic.hpp"
 #include "kinematics.hpp"
+#include "last_node.hpp"
 #include <cmath>
 
 namespace abut {
@@ -112,13 +113,14 @@ public:
   // Whether the stiffness is where the tangent is.
   bool symmetric() const { return !cells.mean_dilatation; }
 
-  // Adds the stiffness (n, n, dim, dim) at point q, theory (D6), (D8); half: for nodes i <= k only.
+  // Adds the stiffness (n, n, dim, dim) at point q, theory (D6), (D8), of the nodes that ``complete`` does not add;
+  // half: for nodes i <= k only.
   void add_stiffness(std::size_t q, const Dense &tangent, const double *stress, bool half, double *block) {
     respond(q, tangent, stress);
-    for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t i = 0; i < added(); ++i) {
       double g[dim]; // local, so that it stays in registers
       std::copy_n(&gradient[(q * n + i) * dim], dim, g);
-      for (std::size_t k = half ? i : 0; k < n; ++k) {
+      for (std::size_t k = half ? i : 0; k < added(); ++k) {
         // They do not overlap, so that the compiler may take several components at a time.
         double *__restrict out = &block[(i * n + k) * dim * dim];
         const double *__restrict r = &response[k * RESPONSE];
@@ -130,6 +132,9 @@ public:
       }
     }
   }
+
+  // Adds what is left once all points are in: nodes whose equal displacement does not strain the cell.
+  void complete(bool half, double *block) const { complete_from<dim>(added(), n, half, block); }
 
   // Turns a stress at point q into that of Cauchy.
   void to_cauchy(std::size_t q, double *stress) const {
@@ -154,6 +159,9 @@ public:
 
 protected:
   static constexpr int SCALED = dim == 2 && !axisymmetric ? 2 : 3; // directions that F-bar scales
+
+  // Nodes, from the first on, whose stiffness is integrated.
+  std::size_t added() const { return axisymmetric ? n : n - 1; }
 
   // The deformation gradient at a point, its determinant and inverse, the strain, and the factor of F-bar.
   struct Deformed {
@@ -308,7 +316,7 @@ protected:
           moduli.plane[d][b][a][a] += w * stress[AT[b][d]];
     if constexpr (axisymmetric)
       moduli.own += w * stress[2];
-    for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t k = 0; k < added(); ++k) {
       double g[dim];
       std::copy_n(&gradient[(q * n + k) * dim], dim, g);
       double *__restrict r = &response[k * RESPONSE];
@@ -352,7 +360,7 @@ protected:
         for (int p = 0; p < dim; ++p)
           first[b][a] += w * at.f[a][p] * by_scale[AT[p][b]];
     at.invert();
-    for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t k = 0; k < added(); ++k) {
       double own[dim], *r = &response[k * RESPONSE];
       push(at, &gradient[(q * n + k) * dim], axisymmetric ? hoop[q * n + k] : 0, own);
       for (int c = 0; c < dim; ++c)

@@ -8,6 +8,7 @@
 #include "mixed_strain.hpp"
 #include <algorithm>
 #include <cstdint>
+#include <new>
 #include <optional>
 #include <type_traits>
 #include <vector>
@@ -52,25 +53,6 @@ inline double at_point(const double *shapes, std::size_t n, std::size_t q, const
   for (std::size_t i = 0; i < n; ++i)
     sum += shapes[q * n + i] * values[i];
   return sum;
-}
-
-// A material at a point that heat stretches freely by ``stretch``, theory (D5): its strain is the elastic one.
-template <class Material>
-typename Material::Tangent heated(const Material &material, const Point &point, double stretch, double *strain,
-                                  double *stress) {
-  const double square = stretch * stretch;
-  if (stretch != 1)
-    for (int s = 0; s < STRAINS; ++s)
-      strain[s] = (strain[s] - (s < 3) * (square - 1) / 2) / square;
-  auto result = material.evaluate(point, strain, stress);
-  if (stretch != 1) {
-    for (int s = 0; s < STRAINS; ++s)
-      stress[s] *= stretch;
-    for (double &c : result.c)
-      c /= stretch;
-    result.energy *= stretch * square;
-  }
-  return result;
 }
 
 // Strain at point q that stresses: less what the temperature makes. thermal (n,) of the cell, or null.
@@ -154,7 +136,7 @@ private:
       if (strained)
         mechanical_strain(kinematics, cells, q, u.data(), thermal, strain);
       const Point point{c, c * cells.rule + q, rows.has(own[0])};
-      tangent[q] = material.evaluate(point, strain, stressed ? &stress[q * STRAINS] : nullptr);
+      new (&tangent[q]) Tangent(material.evaluate(point, strain, stressed ? &stress[q * STRAINS] : nullptr));
       if constexpr (knows_energy)
         energy += kinematics.reference_volume(q) * tangent[q].energy;
     }
@@ -174,7 +156,8 @@ private:
         std::copy_n(strain, STRAINS, &strains[q * STRAINS]);
       const double stretch = 1 + (state.thermal ? at_point(kinematics.swelling(), n, q, state.thermal + c * n) : 0);
       double *const at = &stress[q * STRAINS];
-      tangent[q] = heated(material, Point{c, c * cells.rule + q, rows.has(own[0])}, stretch, strain, at);
+      // In its place: copies of a tangent take as long as some laws.
+      new (&tangent[q]) Tangent(heated(material, Point{c, c * cells.rule + q, rows.has(own[0])}, stretch, strain, at));
       if (!tangent[q].sound)
         return kinematics.determinant(q);
       if (material.plane_stress)
@@ -237,6 +220,8 @@ private:
         kinematics.add_stiffness(q, tangent[q].c, half(), block.data());
     if constexpr (std::is_same_v<Tangent, Moduli>)
       kinematics.finish(tangent[0], block.data());
+    else
+      kinematics.complete(half(), block.data());
     for (std::size_t i = 0; i < n; ++i)
       if (rows.has(own[i]))
         scatter(i);

@@ -3,6 +3,7 @@
 #pragma once
 #include "cell_functions.hpp"
 #include "jacobian.hpp"
+#include "last_node.hpp"
 #include "materials.hpp"
 #include <algorithm>
 #include <numbers>
@@ -105,17 +106,18 @@ public:
     }
   }
 
-  // Adds the stiffness (n, n, dim, dim) of any tangent at point q; symmetric: it is, and only nodes i <= k are added
-  // up.
+  // Adds the stiffness (n, n, dim, dim) of any tangent at point q, of the nodes that ``complete`` does not add;
+  // symmetric: it is, and only nodes i <= k are added up.
   void add_stiffness(std::size_t q, const double *c, bool symmetric, double *block) {
-    for (std::size_t k = 0; k < n; ++k)
+    const std::size_t nodes = added();
+    for (std::size_t k = 0; k < nodes; ++k)
       respond(q, k, c, &response[k * (STRAINS + 1) * dim]);
-    for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t i = 0; i < nodes; ++i) {
       double g[dim], more[dim]; // local, so that they stay in registers
       std::copy_n(&gradient[(q * n + i) * dim], dim, g);
       for (int a = 0; a < dim; ++a)
         more[a] = mixed ? (mean[(q * n + i) * dim + a] - dilatation(q, i, a)) / 3 : 0;
-      for (std::size_t k = symmetric ? i : 0; k < n; ++k) {
+      for (std::size_t k = symmetric ? i : 0; k < nodes; ++k) {
         const double *r = &response[k * (STRAINS + 1) * dim];
         double *out = &block[(i * n + k) * dim * dim];
         for (int d = 0; d < dim; ++d) {
@@ -135,8 +137,14 @@ public:
     }
   }
 
-  // The same of two constants, for nodes i <= k, without the mean dilatation: lambda div v div u + 2 mu eps(v) :
-  // eps(u).
+  // Adds what is left once all points are in: nodes whose equal displacement does not strain the cell.
+  void complete(bool symmetric, double *block) const {
+    if (added() < n)
+      complete_last_node<dim>(n, symmetric, block);
+  }
+
+  // Stiffness of two constants, of all nodes, for i <= k, without the mean dilatation: lambda div v div u + 2 mu eps(v)
+  // : eps(u).
   void add_stiffness(std::size_t q, const Moduli &tangent, double *block) {
     const double w = volume[q], mu = tangent.mu;
     const double lambda = mixed ? -2 * mu / 3 : tangent.lambda; // what is left is deviatoric
@@ -183,6 +191,9 @@ public:
   const double *swelling() const { return cells.pressures ? seen.data() : cells.shapes; }
 
 private:
+  // Nodes, from the first on, whose stiffness under any tangent is integrated.
+  std::size_t added() const { return axisymmetric ? n : n - 1; }
+
   // r[s][a]: stress s at point q, times its weight, by displacement a of node k under a tangent c; last the sum of the
   // normal ones.
   void respond(std::size_t q, std::size_t k, const double *c, double *r) const {

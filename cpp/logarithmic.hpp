@@ -50,48 +50,43 @@ public:
   // Turns stress and tangent (6, 6) in the space of logarithms into those of Piola, Kirchhoff, Green and Lagrange,
   // theory (Y9), (Y10).
   void back(double *stress, double *c) const {
-    double turned[STRAINS] = {0}, wide[STRAINS][STRAINS] = {{0}}, own[STRAINS][STRAINS] = {{0}};
-    for (int s = 0; s < STRAINS; ++s)
-      for (int m = 0; m < STRAINS; ++m) {
-        const double turn = of_strain[s][m] * doubled(m);
-        turned[s] += turn * stress[m];
-        for (int t = 0; t < STRAINS; ++t)
-          wide[s][t] += turn * c[m * STRAINS + t];
-      }
-    double columns[STRAINS][STRAINS]; // rows in memory, lest the products below stride
+    Square own, wide, given, rows, columns; // of the turn, and transposed
     for (int m = 0; m < STRAINS; ++m)
-      for (int t = 0; t < STRAINS; ++t)
-        columns[m][t] = of_strain[t][m] * doubled(m);
-    for (int s = 0; s < STRAINS; ++s)
-      for (int m = 0; m < STRAINS; ++m)
-        for (int t = 0; t < STRAINS; ++t)
-          own[s][t] += wide[s][m] * columns[m][t];
-    for (int s = 0; s < STRAINS; ++s) {
-      turned[s] /= doubled(s);
-      for (int t = 0; t < STRAINS; ++t)
-        own[s][t] *= first[s] / doubled(s) * first[t] / doubled(t);
-    }
-    add_bending(turned, own);
-    std::fill_n(&wide[0][0], STRAINS * STRAINS, 0.0);
-    for (int s = 0; s < STRAINS; ++s)
-      for (int m = 0; m < STRAINS; ++m)
-        for (int t = 0; t < STRAINS; ++t)
-          wide[s][t] += own[s][m] * of_strain[m][t];
-    write(turned, wide, stress, c);
+      for (int t = 0; t < STRAINS; ++t) {
+        rows[t][m] = columns[m][t] = of_strain[t][m] * doubled(m) / doubled(t);
+        given[m][t] = c[m * STRAINS + t];
+      }
+    multiply(rows, given, wide);
+    multiply(wide, columns, own);
+    double turned[STRAINS];
+    turn(stress, turned);
+    finish(turned, own, stress, c);
+  }
+
+  // The same of a tangent in parts.
+  void back(double *stress, const Flowing &tangent, double *c) const {
+    double turned[STRAINS];
+    Square own;
+    Flowing along = tangent;
+    turn(stress, turned);
+    if (tangent.flows)
+      turn(tangent.stress, along.stress), turn(tangent.normal, along.normal);
+    along.write(&own[0][0]);
+    finish(turned, own, stress, c);
   }
 
   // The same of stress and tangent along the principal axes, of laws that are isotropic: no shear stress, shear apart.
   void back_from_principal(double *stress, double *c) const {
-    double wide[STRAINS][STRAINS] = {{0}};
+    Square wide;
     const Second second(*this);
-    for (int s = 0; s < 3; ++s)
-      for (int m = 0; m < 3; ++m) {
-        double own = c[s * STRAINS + m] * first[s] * first[m];
-        if (s == m)
-          own += 2 * second.of[s][s][s] * stress[s];
-        for (int t = 0; t < STRAINS; ++t)
-          wide[s][t] += own * of_strain[m][t];
-      }
+    for (int s = 0; s < 3; ++s) {
+      double own[3];
+      for (int m = 0; m < 3; ++m)
+        own[m] = c[s * STRAINS + m] * first[s] * first[m];
+      own[s] += 2 * second.of[s][s][s] * stress[s];
+      for (int t = 0; t < STRAINS; ++t)
+        wide[s][t] = own[0] * of_strain[0][t] + own[1] * of_strain[1][t] + own[2] * of_strain[2][t];
+    }
     for (int s = 3; s < STRAINS; ++s) {
       const int i = I[s], k = J[s];
       const double bending = (second.of[i][i][k] * stress[i] + second.of[i][k][k] * stress[k]) / 2;
@@ -151,6 +146,18 @@ private:
 
   static constexpr double doubled(int s) { return s < 3 ? 1 : 2; }
 
+  using Square = double[STRAINS][STRAINS];
+  // a b; written once, as zeros would take as long as a factor.
+  static void multiply(const Square &a, const Square &b, Square &result) {
+    for (int s = 0; s < STRAINS; ++s)
+      for (int t = 0; t < STRAINS; ++t) {
+        double sum = a[s][0] * b[0][t];
+        for (int m = 1; m < STRAINS; ++m)
+          sum += a[s][m] * b[m][t];
+        result[s][t] = sum;
+      }
+  }
+
   // To the principal axes, of strains with doubled shear. That of stresses doubles its columns of shear and halves its
   // rows of shear.
   void rotations() {
@@ -169,11 +176,20 @@ private:
   void set() {
     for (int a = 0; a < 3; ++a)
       square[a] = 1 + 2 * matrix[a][a];
-    for (int s = 0; s < STRAINS; ++s) {
+    for (int a = 0; a < 3; ++a)
+      first[a] = 1 / square[a];
+    for (int s = 3; s < STRAINS; ++s) {
       const int a = I[s], b = J[s];
-      const double more = 2 * (matrix[a][a] - matrix[b][b]) / square[b];
-      first[s] = (more == 0 ? 1 : std::log1p(more) / more) / square[b];
+      const double more = 2 * (matrix[a][a] - matrix[b][b]) * first[b];
+      first[s] = logarithm(more) * first[b];
     }
+  }
+
+  // ln(1 + x) / x, by its series where that has all digits.
+  static double logarithm(double x) {
+    if (std::abs(x) > NEAR)
+      return std::log1p(x) / x;
+    return 1 - x * (1.0 / 2 - x * (1.0 / 3 - x * (1.0 / 4 - x * (1.0 / 5 - x / 6))));
   }
 
   // Twice the second divided differences, by three eigenvalues.
@@ -184,7 +200,7 @@ private:
       for (int i = 0; i < 3; ++i)
         for (int j = i; j < 3; ++j)
           for (int k = j; k < 3; ++k) {
-            const double value = i == k ? -1 / (log.square[i] * log.square[i]) : log.second(i, j, k);
+            const double value = i == k ? -log.first[i] * log.first[i] : log.second(i, j, k);
             of[i][j][k] = of[i][k][j] = of[j][i][k] = of[j][k][i] = of[k][i][j] = of[k][j][i] = value;
           }
     }
@@ -195,10 +211,11 @@ private:
     double d[3] = {square[a] - mean, square[b] - mean, square[c] - mean};
     const double far = std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
     if (far < NEAR * mean) { // the series of ln about the mean: no differences of near numbers
+      const double part = 1 / mean;
       for (double &value : d)
-        value /= mean;
+        value *= part;
       const double two = d[0] * d[1] + d[1] * d[2] + d[2] * d[0], three = d[0] * d[1] * d[2];
-      return 2 * (-0.5 + two / 4 + three / 5 - two * two / 6) / (mean * mean);
+      return 2 * (-0.5 + two / 4 + three / 5 - two * two / 6) * part * part;
     }
     const double ab = std::abs(square[a] - square[b]), bc = std::abs(square[b] - square[c]);
     const double ca = std::abs(square[c] - square[a]);
@@ -209,9 +226,30 @@ private:
 
   double difference(int a, int b) const { return first[AT[a][b]]; }
 
+  // A stress along the principal axes.
+  void turn(const double *stress, double *result) const {
+    for (int s = 0; s < STRAINS; ++s) {
+      double sum = 0;
+      for (int m = 0; m < STRAINS; ++m)
+        sum += of_strain[s][m] * doubled(m) * stress[m];
+      result[s] = sum / doubled(s);
+    }
+  }
+
+  // Stress and tangent from those of logarithms along the principal axes.
+  void finish(const double *turned, Square &own, double *stress, double *c) const {
+    Square wide;
+    for (int s = 0; s < STRAINS; ++s)
+      for (int t = 0; t < STRAINS; ++t)
+        own[s][t] *= first[s] * first[t];
+    add_bending(turned, own);
+    multiply(own, of_strain, wide);
+    write(turned, wide, stress, c);
+  }
+
   // Adds what the stress contributes as the axes turn and the first differences change, in principal axes: pairs of
   // components that share an index.
-  void add_bending(const double *stress, double (&c)[STRAINS][STRAINS]) const {
+  void add_bending(const double *stress, Square &c) const {
     const Second second(*this);
     const auto &f = second.of;
     for (int a = 0; a < 3; ++a)
@@ -227,23 +265,25 @@ private:
   }
 
   // Stress and tangent from those along the principal axes; wide: of the latter, by strain.
-  void write(const double *turned, const double (&wide)[STRAINS][STRAINS], double *stress, double *c) const {
-    double result[STRAINS] = {0}, tangent[STRAINS][STRAINS] = {{0}};
-    for (int m = 0; m < STRAINS; ++m)
-      for (int s = 0; s < STRAINS; ++s) {
-        result[s] += of_strain[m][s] * first[m] * turned[m];
-        for (int t = 0; t < STRAINS; ++t)
-          tangent[s][t] += of_strain[m][s] * wide[m][t];
+  void write(const double *turned, const Square &wide, double *__restrict stress, double *__restrict c) const {
+    for (int s = 0; s < STRAINS; ++s) {
+      stress[s] = of_strain[0][s] * first[0] * turned[0];
+      for (int m = 1; m < STRAINS; ++m)
+        stress[s] += of_strain[m][s] * first[m] * turned[m];
+      for (int t = 0; t < STRAINS; ++t) {
+        double sum = of_strain[0][s] * wide[0][t];
+        for (int m = 1; m < STRAINS; ++m)
+          sum += of_strain[m][s] * wide[m][t];
+        c[s * STRAINS + t] = sum;
       }
-    std::copy_n(result, STRAINS, stress);
-    std::copy_n(&tangent[0][0], STRAINS * STRAINS, c);
+    }
   }
 
   static constexpr double NEAR = 1e-3; // from here on differences keep twelve digits, the series below all
 
   double matrix[3][3], axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}; // axes in columns
   double square[3], first[STRAINS];
-  double of_strain[STRAINS][STRAINS];
+  Square of_strain;
 };
 
 } // namespace abut

@@ -30,6 +30,21 @@ struct Dense {
   bool sound;
 };
 
+// A tangent of isotropic elasticity and of flow: diagonal times the identity of symmetric tensors, spherical times that
+// of their traces, and, where it flows, the dyad of two stresses.
+struct Flowing {
+  double diagonal, spherical, stress[STRAINS], normal[STRAINS];
+  bool flows = false;
+
+  void write(double *c) const {
+    for (int s = 0; s < STRAINS; ++s) {
+      for (int t = 0; t < STRAINS; ++t)
+        c[s * STRAINS + t] = (flows ? stress[s] * normal[t] : 0) + (s < 3 && t < 3 ? spherical : 0);
+      c[s * STRAINS + s] += s < 3 ? diagonal : diagonal / 2;
+    }
+  }
+};
+
 // Isotropic linear elasticity with the constants (cells, 2) of each cell; in plane stress lambda is the reduced one.
 struct Isotropic {
   using Tangent = Moduli;
@@ -102,5 +117,24 @@ struct Told {
     return {{0}, 0, true};
   }
 };
+
+// A material at a point that heat stretches freely by ``stretch``, theory (D5): its strain is the elastic one.
+template <class Material>
+typename Material::Tangent heated(const Material &material, const Point &point, double stretch, double *strain,
+                                  double *stress) {
+  const double square = stretch * stretch;
+  if (stretch != 1)
+    for (int s = 0; s < STRAINS; ++s)
+      strain[s] = (strain[s] - (s < 3) * (square - 1) / 2) / square;
+  auto result = material.evaluate(point, strain, stress);
+  if (stretch != 1) {
+    for (int s = 0; s < STRAINS; ++s)
+      stress[s] *= stretch;
+    for (double &c : result.c)
+      c /= stretch;
+    result.energy *= stretch * square;
+  }
+  return result;
+}
 
 } // namespace abut

@@ -96,17 +96,17 @@ public:
 
   bool symmetric() const { return true; }
 
-  // Adds the stiffness of theory (D21).
+  // Adds the stiffness of theory (D21), of the nodes that ``complete`` does not add.
   void add_stiffness(std::size_t q, const Dense &tangent, const double *stress, bool half, double *block) {
     const double w = volume[q], square = points[q].scale * points[q].scale, t = 3 * mean_stress[q];
     const double whole = pressure[q] * points[q].det, turn = whole - mean_stress[q];
-    for (std::size_t k = 0; k < n; ++k)
+    for (std::size_t k = 0; k < this->added(); ++k)
       respond(q, k, tangent, stress);
     double sigma[3][3];
     Base::tensor(stress, sigma);
-    for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t i = 0; i < this->added(); ++i) {
       const double *g = &gradient[(q * n + i) * dim], *own = &log_change[(q * n + i) * dim];
-      for (std::size_t k = half ? i : 0; k < n; ++k) {
+      for (std::size_t k = half ? i : 0; k < this->added(); ++k) {
         const double *h = &gradient[(q * n + k) * dim], *other = &log_change[(q * n + k) * dim];
         const Node &x = bar[i], &y = bar[k];
         double *out = &block[(i * n + k) * dim * dim], scalar = 0;

@@ -25,17 +25,25 @@ struct Hooke {
   static constexpr bool symmetric() { return true; }
 
   void respond(const double *strain, const double *, double *, double *stress, Dense &result) const {
-    const double trace = strain[0] + strain[1] + strain[2], lambda = bulk - 2 * shear / 3;
+    const double lambda = bulk - 2 * shear / 3;
     std::fill_n(result.c, STRAINS * STRAINS, 0.0);
-    result.energy = 0;
     for (int a = 0; a < 3; ++a) {
-      stress[a] = 2 * shear * strain[a] + lambda * trace, stress[3 + a] = shear * strain[3 + a];
       for (int b = 0; b < 3; ++b)
         result.c[a * STRAINS + b] = lambda + 2 * shear * (a == b);
       result.c[(3 + a) * STRAINS + 3 + a] = shear;
     }
+    result.energy = this->stress(strain, stress);
+  }
+
+  // Writes the stress; returns the energy.
+  double stress(const double *strain, double *result) const {
+    const double trace = strain[0] + strain[1] + strain[2], lambda = bulk - 2 * shear / 3;
+    double energy = 0;
+    for (int a = 0; a < 3; ++a)
+      result[a] = 2 * shear * strain[a] + lambda * trace, result[3 + a] = shear * strain[3 + a];
     for (int s = 0; s < STRAINS; ++s)
-      result.energy += stress[s] * strain[s] / 2;
+      energy += result[s] * strain[s] / 2;
+    return energy;
   }
 
   // Strain out of the plane without stress there, as a first guess.
@@ -55,6 +63,13 @@ public:
     std::vector<double> table;      // (n, 2) equivalent plastic strain and yield stress, beyond which it is constant
     double slope, saturation, rate; // adds slope x + saturation (1 - exp(-rate x))
     std::vector<double> back;       // (n, 2) modulus and recall of each back stress
+
+    bool fades() const { // some back stress
+      for (std::size_t k = 1; k < back.size(); k += 2)
+        if (back[k] != 0)
+          return true;
+      return false;
+    }
   };
 
   J2(double bulk, double shear, Hardening hardening)
@@ -63,18 +78,22 @@ public:
   const std::size_t history;
 
   // Back stresses that fade make the tangent unsymmetric.
-  bool symmetric() const {
-    for (std::size_t k = 1; k < hardening.back.size(); k += 2)
-      if (hardening.back[k] != 0)
-        return false;
-    return true;
-  }
+  bool symmetric() const { return !hardening.fades(); }
 
   void respond(const double *strain, const double *before, double *after, double *stress, Dense &result) const {
+    Flowing tangent;
+    respond(strain, before, after, stress, tangent, result.energy);
+    tangent.write(result.c);
+  }
+
+  // The same with the parts of the tangent.
+  void respond(const double *strain, const double *before, double *after, double *stress, Flowing &tangent,
+               double &energy) const {
     double trial[STRAINS], deviator[STRAINS];
     for (int s = 0; s < STRAINS; ++s)
       trial[s] = strain[s] - (before ? before[s] : 0);
-    elastic.respond(trial, nullptr, nullptr, stress, result);
+    energy = elastic.stress(trial, stress);
+    tangent.diagonal = 2 * elastic.shear, tangent.spherical = elastic.bulk - 2 * elastic.shear / 3;
     const double mean = (stress[0] + stress[1] + stress[2]) / 3;
     for (int s = 0; s < STRAINS; ++s)
       deviator[s] = stress[s] - (s < 3) * mean;
@@ -90,13 +109,13 @@ public:
     const double way = ROOT * flow.amount;
     for (int s = 0; s < STRAINS; ++s)
       stress[s] = deviator[s] - 2 * elastic.shear * way * flow.normal[s] + (s < 3) * mean;
-    flow.linearise(result.c);
+    flow.linearise(tangent);
     double square = 0;
     for (int s = 0; s < STRAINS; ++s) {
       const double left = stress[s] - (s < 3) * mean;
       square += (s < 3 ? 1 : 2) * left * left;
     }
-    result.energy = mean * mean / (2 * elastic.bulk) + square / (4 * elastic.shear);
+    energy = mean * mean / (2 * elastic.bulk) + square / (4 * elastic.shear);
     if (after)
       flow.write(before, after, yield);
   }
@@ -192,23 +211,17 @@ private:
     }
 
     // The consistent tangent, theory (Y6), (Y7).
-    void linearise(double *c) const {
-      const double shear = law.elastic.shear, lambda = law.elastic.bulk;
+    void linearise(Flowing &tangent) const {
+      const double shear = law.elastic.shear;
       const double bent = 2 * shear * ROOT * amount / size, along = contracted(normal, turning);
-      double by[STRAINS]; // amount by strain
-      for (int s = 0; s < STRAINS; ++s)
-        by[s] = ROOT * 2 * shear * normal[s] / slope;
-      const double left = 2 * shear * (1 - bent);
+      const double by = ROOT * 2 * shear / slope; // amount by strain, times the normal
+      tangent.flows = true;
+      tangent.diagonal = 2 * shear * (1 - bent), tangent.spherical = law.elastic.bulk - tangent.diagonal / 3;
       for (int s = 0; s < STRAINS; ++s) {
         const double to_by = bent * (along * normal[s] - turning[s]) - 2 * shear * ROOT * normal[s];
-        const double to_normal = bent * 2 * shear * normal[s];
-        for (int t = 0; t < STRAINS; ++t)
-          c[s * STRAINS + t] = to_by * by[t] + to_normal * normal[t];
-        c[s * STRAINS + s] += s < 3 ? left : left / 2;
+        tangent.stress[s] = to_by * by + bent * 2 * shear * normal[s];
+        tangent.normal[s] = normal[s];
       }
-      for (int s = 0; s < 3; ++s)
-        for (int t = 0; t < 3; ++t)
-          c[s * STRAINS + t] += lambda - left / 3;
     }
 
     // The new history; work is the mean of what flow takes at the beginning and at the end.
@@ -247,6 +260,11 @@ public:
   explicit J2OverTemperature(std::vector<Row> rows) : rows(std::move(rows)) {}
 
   std::size_t history() const { return J2::BACK + rows[0].hardening.back.size() / 2 * STRAINS; }
+
+  // At every temperature.
+  bool symmetric() const {
+    return std::all_of(rows.begin(), rows.end(), [](const Row &row) { return !row.hardening.fades(); });
+  }
 
   J2 at(double temperature) const {
     std::size_t upper = 0;

@@ -36,6 +36,14 @@ template <class Law, bool logarithmic> struct PointMaterial {
       if (!logarithm.sound)
         return result;
       double own[STRAINS];
+      if constexpr (in_parts)
+        if (!plane_stress) {
+          Flowing parts;
+          logarithm.strain(own);
+          law.respond(own, old, now, stress, parts, result.energy);
+          logarithm.back(stress, parts, result.c);
+          return result;
+        }
       if constexpr (principal)
         logarithm.principal(own);
       else
@@ -55,6 +63,9 @@ template <class Law, bool logarithmic> struct PointMaterial {
 
 private:
   static constexpr bool principal = requires { Law::principal; }; // it takes principal strains
+  static constexpr bool in_parts = requires(const Law &law, Flowing &parts, double &energy) {
+    law.respond(nullptr, nullptr, nullptr, nullptr, parts, energy);
+  };
 
   bool find(double *strain, const double *old, double *now, double *stress, Dense &result) const {
     if (plane_stress)

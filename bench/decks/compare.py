@@ -87,8 +87,8 @@ def compare(name: str, path: Path, limit: float = 600.0, large: bool = True) -> 
 
 def _compare(name: str, path: Path, what: str, limit: float, large: bool) -> Outcome:
     try:
-        model, at, nodes, ignored = _model(path, large)
-        steps = _solved(model, at, nodes)
+        model, at, nodes, ignored = model_of(path, large)
+        steps = solved(model, at, nodes)
     except AbutError as error:
         refused = isinstance(error, InputError)
         return Outcome(name, what, "refused" if refused else "failed", detail=_reason(str(error), path))
@@ -98,12 +98,12 @@ def _compare(name: str, path: Path, what: str, limit: float, large: bool) -> Out
         try:
             found = reference(path, ignored, limit, kind)
         except NoReference as reason:
-            best = best or Outcome(name, what, "no reference", ignored, _largest(steps), kind=kind, detail=str(reason))
+            best = best or Outcome(name, what, "no reference", ignored, largest(steps), kind=kind, detail=str(reason))
             continue
         references.append(found)
         error = difference(found.steps, steps)
         status = "agrees" if error <= AGREES else "differs"
-        outcome = Outcome(name, what, status, ignored, _largest(found.steps), error, kind)
+        outcome = Outcome(name, what, status, ignored, largest(found.steps), error, kind)
         if best is None or best.status == "no reference" or error < best.difference:
             best = outcome
         if status == "agrees":
@@ -112,7 +112,7 @@ def _compare(name: str, path: Path, what: str, limit: float, large: bool) -> Out
     others = _by_slaves(model)
     if best.status == "differs" and others is not None:
         found = next(r for r in references if r.kind == best.kind)
-        best = replace(best, slave=difference(found.steps, _solved(others, at, nodes)))
+        best = replace(best, slave=difference(found.steps, solved(others, at, nodes)))
     if best.status == "differs" and len(references) == 2:
         own = difference(references[0].steps, references[1].steps)
         return replace(best, detail=f"CalculiX's two kinds of contact differ by {own:.1%} from each other")
@@ -126,7 +126,7 @@ def _reason(message: str, path: Path) -> str:
     return ", ".join(line.replace(f"{path}:", "line ").partition(";")[0] for line in kept)
 
 
-def _model(path: Path, large: bool) -> tuple[abut.Model, list[float], dict[int, Mean], tuple[str, ...]]:
+def model_of(path: Path, large: bool) -> tuple[abut.Model, list[float], dict[int, Mean], tuple[str, ...]]:
     """A deck as a model, the ends of its steps, the rows of points of each of its nodes, and what abut was told to ignore:
     NLGEOM, where it stands, unless ``large``, as in the reference run."""
     stands = re.search(r"^\*STEP.*NLGEOM", path.read_text(encoding="latin-1"), re.IGNORECASE | re.MULTILINE)
@@ -178,7 +178,7 @@ def _by_slaves(model: abut.Model) -> abut.Model | None:
         return None
 
 
-def _solved(model: abut.Model, at: Sequence[float], nodes: dict[int, Mean]) -> list[Displacements]:
+def solved(model: abut.Model, at: Sequence[float], nodes: dict[int, Mean]) -> list[Displacements]:
     """Displacements at the end of each step of a deck."""
     solution = abut.solve(model)
     if not solution.converged:
@@ -194,7 +194,7 @@ def _solved(model: abut.Model, at: Sequence[float], nodes: dict[int, Mean]) -> l
     return result
 
 
-def _largest(steps: Sequence[Displacements]) -> float:
+def largest(steps: Sequence[Displacements]) -> float:
     return max(float(np.linalg.norm(u)) for step in steps for u in step.values())
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from abut.analysis.deadline import Deadline
 from abut.analysis.interpolation_error import Mended, is_mended, mended
-from abut.analysis.limit_load import limit_load, yields
+from abut.analysis.limit_load import limit_load, near_limit, yields
 from abut.analysis.linear_solvers import assembled_bodies, linear_solver, setting_up, solver_kind
 from abut.analysis.modes import check_modes, modes
 from abut.analysis.parts import whole
@@ -311,8 +311,19 @@ class Run:
         elif len(attempts) > 1:
             times = ", ".join(f"{attempt.time:.6g}" for attempt in attempts)
             self.told.note(f"step {attempts[-1].number} was taken in {len(attempts)} parts, to times {times}")
+            self._tell_of_limit(attempts)
         self.keep(self.so_far(complete=False), saved_step(attempts, self.kind))
         self.clock.mark("writing")
+
+    def _tell_of_limit(self, parts: Sequence[Attempt]) -> None:
+        """Of a run that ends near a limit load."""
+        last, end = self.steps[-1], self.model.ends[-1]
+        if last.flow is None or not np.isclose(parts[-1].time, end):
+            return
+        limit = near_limit(self.assembled, self.steps, [part.time for part in parts])
+        if limit is not None:
+            self.steps[-1] = replace(last, flow=replace(last.flow, limit=limit))
+            self.told.note(f"{limit.where}; {GO_ON}")
 
     def _fallback(self, number: int, reason: NotConverged) -> LinearSolver:
         direct = linear_solver("direct", self.assembled.problem, self.team)

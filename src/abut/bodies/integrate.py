@@ -7,12 +7,13 @@ from dataclasses import replace
 import numpy as np
 
 from abut._core import integrate_given, integrate_given_finite
-from abut.bodies.evaluation import History, Part, evaluate
+from abut.bodies.evaluation import History, Part, evaluate, places
 from abut.bodies.inverted import require_sound
 from abut.bodies.solids import Array, Group, Solids, TemperatureChange
 from abut.bodies.volumes import point_volumes
 from abut.materials.kernel import At, Since, Wanted
 from abut.materials.material import compiled, stored
+from abut.materials.places import is_local
 from abut.mesh.quadrature import Rule
 
 
@@ -87,8 +88,11 @@ def _compiled(
         return []
     if displacement is None:
         at = replace(at, displacement=np.zeros(solids.points.shape))
+    material = solids.materials[group.body]
+    if is_local(material):
+        at = replace(at, thermal=None, change=places(solids, group, rule, temperature).change)
     n = len(group.cells) * len(rule[1])
-    before = history[group.body][group.first : group.first + n] if history else solids.materials[group.body].initial(n)
+    before = history[group.body][group.first : group.first + n] if history else material.initial(n)
     after = np.array(before)
     found = kernel.integrate(replace(at, before=np.ascontiguousarray(before)), replace(wanted, after=after))
     require_sound(solids, group, found)

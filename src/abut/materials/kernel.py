@@ -40,7 +40,8 @@ class Since:
 class At:
     """Where to integrate: cells with a rule, constants (cells, m), plane_stress, displacement (n_points, dim) or None,
     thermal strains (cells, n_nodes) or None, history before, (cells q, h), and under finite strains from where
-    Newton's method came."""
+    Newton's method came. change: (cells q,) how much warmer the points became, of materials that take the temperature
+    themselves."""
 
     cells: Cells
     constants: Array
@@ -48,6 +49,7 @@ class At:
     displacement: Array | None
     thermal: Array | None
     before: Array | None = None
+    change: Array | None = None
     since: Since | None = None
 
     @property

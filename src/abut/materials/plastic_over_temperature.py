@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from abut._core import J2OverTemperature, j2_over_temperature
 from abut.errors import InputError
 from abut.materials.evaluated import Array, Evaluated
+from abut.materials.kernel import At, Unsound, Wanted
 from abut.materials.material import OwnMaterial
 from abut.materials.plastic import Plastic
 
@@ -47,6 +48,28 @@ class HeatedPlastic(OwnMaterial):
         now = np.ascontiguousarray(np.broadcast_to(self.temperature, len(strain)))
         result: Evaluated = self.law.evaluate(strain, np.ascontiguousarray(history, dtype=float), now, finite)
         return result
+
+
+@dataclass(frozen=True)
+class HeatedKernel:
+    """The same in the compiled core. swelling: from changes of temperature (n,) to thermal strains (n,)."""
+
+    law: J2OverTemperature
+    initial_temperature: float
+    swelling: Callable[[Array], Array] = field(compare=False)
+    finite: bool
+    name: str = "heated"
+    together: bool = False
+
+    def integrate(self, at: At, wanted: Wanted) -> Unsound:
+        """As in ``Kernel``."""
+        assert at.change is not None
+        temperature, swelling = self.initial_temperature + at.change, np.ascontiguousarray(self.swelling(at.change))
+        found: Unsound = self.law.integrate(
+            at.cells, self.finite, at.plane_stress, at.displacement, temperature, swelling, at.before, wanted.force,
+            wanted.tangent, wanted.stress, wanted.energy, wanted.after,
+        )  # fmt: skip
+        return found
 
 
 def between(temperatures: Sequence[float], materials: Sequence[Plastic]) -> J2OverTemperature:

@@ -16,10 +16,11 @@ from abut.materials.anisotropic import LocalElastic
 from abut.materials.directional import Directional
 from abut.materials.elastic import INCOMPRESSIBLE, LinearElastic
 from abut.materials.evaluated import Array, Evaluated
+from abut.materials.kernel import Compiled
 from abut.materials.material import Material, OwnMaterial
 from abut.materials.places import Places
 from abut.materials.plastic import FIELDS, Plastic
-from abut.materials.plastic_over_temperature import HeatedPlastic, between
+from abut.materials.plastic_over_temperature import HeatedKernel, HeatedPlastic, between
 
 AtOne = LinearElastic | LocalElastic | Plastic
 
@@ -137,7 +138,7 @@ class OverTemperature(OwnMaterial):
         """As in ``LocalMaterial``."""
         now = self.initial_temperature + places.change
         if self._flowing is not None:
-            return HeatedPlastic(self._flowing, now, self._swelling(places.change)[:, 0], self.modulus)
+            return HeatedPlastic(self._flowing, now, self._swelling_alike(places.change), self.modulus)
         if not now.any() or (now == now[0]).all():
             now = now[:1]
         if self._isotropic:
@@ -146,6 +147,12 @@ class OverTemperature(OwnMaterial):
             each = np.stack([material.stiffness for material in self._local])
             stiffness, frame = _between(self.temperatures, each, now), self._local[0].frame(places.points)
         return Directional(stiffness, frame, self._swelling(places.change) if places.change.any() else None)
+
+    def compiled(self, finite: bool) -> Compiled | None:
+        """As in ``OwnMaterial``: metal that yields."""
+        if self._flowing is None:
+            return None
+        return Compiled(HeatedKernel(self._flowing, self.initial_temperature, self._swelling_alike, finite))
 
     def evaluate(self, strain: Array, history: Array) -> Evaluated:
         """As in ``Material``, at the temperature of the beginning, for axes that are the same everywhere."""
@@ -200,6 +207,10 @@ class OverTemperature(OwnMaterial):
         now = begin + change
         swollen = _between(self.temperatures, each, now) * (now - zero)[:, None]
         return np.asarray(swollen - _between(self.temperatures, each, begin) * (begin - zero)[:, None])
+
+    def _swelling_alike(self, change: Array) -> Array:
+        """The same (n,) of materials that swell alike in all directions."""
+        return self._swelling(change)[:, 0]
 
 
 def _between(temperatures: Sequence[float], values: Array, now: Array) -> Array:

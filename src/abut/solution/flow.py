@@ -17,8 +17,8 @@ GO_ON = "to go on prescribe displacements in place of loads, or give the hardeni
 
 @dataclass(frozen=True)
 class LimitLoad:
-    """Where loads found no equilibrium. missing: share of the time that was not reached; where: time, forces and place, in
-    words."""
+    """Where loads found no equilibrium, or hardly one. missing: share of the time that was not reached, 0 where the run ends
+    near the limit; where: time, forces and place, in words."""
 
     missing: float
     where: str
@@ -44,8 +44,9 @@ class Flow:
         result = [Check("", "plastic strain", self.largest, limit, meaning, notice=notice)]
         if loaded:
             short = "share of the time that is left where metal flows and no load step finds an equilibrium"
-            missing = 0.0 if self.limit is None else self.limit.missing
-            result.append(
-                Check("", "limit load", missing, NONE, short if self.limit is None else f"{short}: {self.limit.where}")
-            )
+            if self.limit is None:
+                result.append(Check("", "limit load", 0.0, NONE, short, last=True))
+            else:  # worth knowing where the loads are carried to the end, too
+                said = f"{short}: {self.limit.where}"
+                result.append(Check("", "limit load", self.limit.missing, NONE, said, last=True, notice=-1.0))
         return result
