@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from abut import checks
 from abut.errors import InputError
 
 MOST_MODES = 10_000
@@ -61,7 +62,7 @@ class Frequencies:
         for name, value in (("stiffening", self.stiffening), ("complex", self.complex)):
             if not isinstance(value, bool):
                 raise InputError(f"frequencies: {name}: expected true or false, got {value!r}")
-        object.__setattr__(self, "diameters", tuple(self.diameters))
+        object.__setattr__(self, "diameters", checks.listed(self.diameters, "frequencies: diameters", "whole numbers"))
         if self.cyclic or self.sectors or self.side:
             self._check_cyclic()
 
