@@ -64,9 +64,9 @@ NO_STRAIN = 1e-12  # nodal forces over stiffness times displacement from which d
 class _End:
     """A model at the end of a load step. displacement, internal, loads, reaction: (dim n_points,) without rigid motions on
     springs, forces of stresses, of loads, of supports and links; following: those of loads that follow the deformation,
-    and of other physics; locked, sprung: of preloads that are locked, of springs and of what holds neutral motions; held: of supports that
-    come and go, part of the reaction; pressures: (n,) of each pair; cycling: (n,) multipliers that
-    keep changing; supports: of each pair int H_k over all of the deformed contactor, (n_functions,), where it may meet the
+    and of other physics; locked, sprung: of preloads that are locked, of springs and of what holds neutral motions; held:
+    of supports that come and go, part of the reaction; pressures: (n,) of each pair; cycling: (n,) multipliers that keep
+    changing; supports: of each pair int H_k over all of the deformed contactor, (n_functions,), where it may meet the
     target anywhere, else None."""
 
     problem: ContactProblem
