@@ -169,9 +169,15 @@ def test_plane_models_are_one_thick(tmp_path):
         ("*ELSET, ELSET=NIL\n*SURFACE, NAME=E\nNIL, S1\n" + KINEMATIC.replace("PUSHED", "E"), "surface 'E' is empty"),
         (KINEMATIC + "3, 1\n", "directions 3 to 1: expected numbers from 1 to 6, in order"),
         (KINEMATIC + "4, 6\n", r"\*KINEMATIC: no displacement \(1, 2, 3\) is coupled"),
-        (KINEMATIC.replace("PUSHED", "PUSHED, INFLUENCE RADIUS=2."), "INFLUENCERADIUS: a radius is not read"),
-        (KINEMATIC.replace("PUSHED", "PUSHED, ORIENTATION=O") + "1\n", "ORIENTATION: axes of its own are not read"),
-        (DISTRIBUTING.replace("PUSHED", "PUSHED, ORIENTATION=O"), "ORIENTATION: axes of its own are not read"),
+        (KINEMATIC.replace("PUSHED", "PUSHED, INFLUENCE RADIUS=-2."), "INFLUENCE RADIUS: expected a number > 0, got '-2.'"),
+        (KINEMATIC.replace("PUSHED", "PUSHED, INFLUENCE RADIUS=.5"), r"couplings\[0\]\.radius: no point of .* nearest at"),
+        (KINEMATIC.replace("PUSHED", "PUSHED, ORIENTATION=O") + "1\n", "no orientation named 'O'"),
+        (
+            "*ORIENTATION, NAME=O, SYSTEM=CYLINDRICAL\n0, 0, 0, 0, 0, 1\n"
+            + KINEMATIC.replace("PUSHED", "PUSHED, ORIENTATION=O") + "1\n",
+            "codes differ in where cylindrical axes of a coupling are taken",
+        ),
+        (DISTRIBUTING.replace("PUSHED", "PUSHED, ORIENTATION=O"), "ORIENTATION: a mean motion has no axes of its own"),
         (DISTRIBUTING + "1, 2\n" + step("*BOUNDARY", "99, 3, 3, 0.1"), "does not list direction 3, and transmits no"),
         (DISTRIBUTING + "1, 3\n" + step("*CLOAD", "99, 4, 2."), "does not list direction 4, and transmits no moment"),
         (DISTRIBUTING.replace("UTING\n", "UTING, WEIGHTING METHOD=LINEAR\n"), "weights over the distance are not read"),
@@ -184,7 +190,7 @@ def test_plane_models_are_one_thick(tmp_path):
         ("*SURFACE, NAME=N, TYPE=NODE\nREF,\n" + KINEMATIC.replace("PUSHED", "N"), "none of its nodes belongs"),
         ("*KINEMATIC COUPLING, REF NODE=99\n", "its data line is missing: expected nodes and directions"),
         ("*KINEMATIC COUPLING, REF NODE=99\nTOP, 3, 1\n", "directions 3 to 1"),
-        ("*KINEMATIC COUPLING, REF NODE=99, ORIENTATION=O\nTOP, 1\n", "ORIENTATION: axes of its own are not read"),
+        ("*KINEMATIC COUPLING, REF NODE=99, ORIENTATION=O\nTOP, 1\n", "no orientation named 'O'"),
         ("*DISTRIBUTING COUPLING, ELSET=D\nTOP, 1.\n", "ELSET=D: expected one element DCOUP3D or DCOUP2D"),
         ("*ELEMENT, TYPE=DCOUP3D, ELSET=D\n9, 98\n*DISTRIBUTING COUPLING, ELSET=D\nTOP, 1.\n", "node 98 does not exist"),
         ("*ELEMENT, TYPE=DCOUP3D, ELSET=D\n9, 99\n*DISTRIBUTING COUPLING, ELSET=D\nTOP, 0.\n", "weight: expected a num"),
@@ -193,6 +199,23 @@ def test_plane_models_are_one_thick(tmp_path):
 def test_what_is_refused(text, message, tmp_path):
     with pytest.raises(InputError, match=message):
         load(tmp_path, COLUMN + text + step("*CLOAD", "15, 3, 1."))
+
+
+def test_a_radius_and_axes_of_its_own(tmp_path):
+    """Nodes within the radius of the reference, one top corner here; the first direction of axes turned by 30 degrees."""
+    corner = REFERENCE + "*NODE\n98, 0., 0., 2.5\n" + PUSHED + HELD
+    near = KINEMATIC.replace("=99", "=98").replace("=PUSHED", "=PUSHED, INFLUENCE RADIUS=0.6")
+    model = load(tmp_path, GLUED + corner + near + step("*CLOAD", "98, 3, 1.")).model
+    (coupling,) = model.couplings
+    assert model.mesh.points[coupling.nodes(model.mesh)].tolist() == [[0.0, 0.0, 2.0]]
+    axes = "*ORIENTATION, NAME=O\n0.866025403784, 0.5, 0, -0.5, 0.866025403784, 0\n"
+    text = axes + COLUMN + KINEMATIC.replace("PUSHED", "PUSHED, ORIENTATION=O") + "1\n"
+    moves = step("*BOUNDARY", "99, 1, 1, 0.02", "99, 2, 2, 0.01", "99, 3, 6")
+    solution = solve(tmp_path, text + moves)
+    top = solution.model.mesh.points[:, 2] == 2.0
+    along = solution.displacement[top] @ [0.866025403784, 0.5, 0.0]
+    assert along == pytest.approx(np.full(4, 0.02 * 0.866025403784 + 0.01 * 0.5), rel=1e-9)
+    assert np.abs(solution.displacement[top, 1] - 0.01).min() > 1e-3  # free across
 
 
 def test_nodes_of_two_couplings(tmp_path):

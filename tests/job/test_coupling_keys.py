@@ -77,7 +77,13 @@ def test_results_of_a_coupling(tmp_path):
 
 
 def test_a_model_and_its_job_are_the_same(tmp_path):
-    job = load(tmp_path, JOB.replace('on = "bar.right"', 'on = "bar.right"\nfollow = ["x", "y"]'))
+    job = load(
+        tmp_path,
+        JOB.replace(
+            'on = "bar.right"',
+            'on = "bar.right"\nfollow = ["x", "y"]\nradius = 9\naxes = { x = [0, 1, 0], xy = [1, 0, 0] }',
+        ),
+    )
     (coupling,) = job.model.couplings
     assert coupling.history("rz") == abut.Amplitude(((0.0, 0.0), (1.0, 1.0)))
     again = load_job(write_job(tmp_path / "again.toml", job)[0]).model

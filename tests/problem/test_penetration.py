@@ -85,6 +85,14 @@ def test_a_fluid_that_is_let_off_leaves() -> None:
     assert steps[2].displacement == pytest.approx(steps[0].displacement, abs=1e-9 * np.abs(steps[1].displacement).max())
 
 
+@pytest.mark.parametrize("dim", [2, pytest.param(3, marks=pytest.mark.long)])
+def test_small_strains_open_as_far(dim: int) -> None:
+    """As the test above, also with positions that follow the displacements, within a facet."""
+    last = _solved(uplift(dim, CELLS, "small-strain")).steps[-1]
+    assert last.penetrations["joint"].area == pytest.approx(BASE - LIGAMENT, abs=BASE / CELLS)
+    assert last.reactions["layer.bottom"][-1] == pytest.approx(WEIGHT, rel=1e-4)
+
+
 @pytest.mark.parametrize("kinematics", ["small", pytest.param("finite", marks=pytest.mark.long)])
 def test_a_fluid_from_the_target_s_side(kinematics: str) -> None:
     """The source may be named on either side, or as a point."""

@@ -182,8 +182,8 @@ def _add_supports(model: Model, skin: _Skin) -> None:
         for axis, value in _axes(model, support):
             held[nodes, axis] = True
             moved[nodes] |= callable(value)
-    for on in (*(c.on for c in model.couplings), *(r.on for r in model.rotations)):
-        held[mesh.nodes_of(on)] = True
+    for nodes in (*(c.nodes(mesh) for c in model.couplings), *(mesh.nodes_of(r.on) for r in model.rotations)):
+        held[nodes] = True
     linked = np.zeros(len(mesh.points), dtype=bool)
     for term in (term for equation in model.equations for term in equation.terms):
         linked[mesh.nodes_of(term.on) if isinstance(term.on, str) else int(term.on)] = True

@@ -267,7 +267,7 @@ def _largest_size(steps: Sequence[Step]) -> float:
 
 def _rigid(end: _End, body: RigidBody, forces: NDArray[np.float64]) -> RigidResult:
     """Motion of a rigid body or coupling, and what moves it."""
-    forces = forces * (body.follow if body.holds else 0.0)
+    forces = body.held(forces)
     histories = end.problem.model.histories
     if end.problem.model.finite and (body.whole or body.mean):
         moved, turn = body.turned(end.nodal)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from abut.decks.elastic import local_axes
 from abut.io.deck.faces import connectivity
 from abut.io.deck.groups import Groups
 from abut.io.deck.nodal_constraints import coordinates
@@ -66,6 +67,9 @@ def couplings(deck: Deck, groups: Groups, plane: str | None) -> list[Coupling]:
                 at,
                 follow,
                 weights,
+                radius=bound.radius,
+                axes=None if bound.orientation is None or follow is None else local_axes(bound.orientation, axes),
+                mirrors=None,
                 **motion.values,
                 amplitude=motion.amplitude,
                 amplitudes=motion.amplitudes,
@@ -148,11 +152,16 @@ def merged(every: Sequence[Bound]) -> list[Bound]:
             result.append(bound)
             continue
         first = result[same]
-        if first.distributing or bound.distributing or first.directions != bound.directions:
+        unlike = (first.directions, first.radius, first.orientation) != (
+            bound.directions,
+            bound.radius,
+            bound.orientation,
+        )
+        if first.distributing or bound.distributing or unlike:
             raise DeckError(
                 bound.place,
                 f"*COUPLING: node {bound.reference} is the reference of another coupling ({first.place}); only kinematic "
-                "ones in the same directions can share it: give this one a node of its own",
+                "ones in the same directions, with one radius, can share it: give this one a node of its own",
             )
         result[same] = replace(first, more=(*first.more, bound))
     return result

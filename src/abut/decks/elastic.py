@@ -21,7 +21,7 @@ def elastic_law(deck: Deck, piece: Piece, dim: int) -> LinearElastic | LocalElas
     """Of a body. Raises InputError for constants that no material has."""
     material, orientation = piece.section.material, piece.section.orientation
     elastic, expansion = material.elastic, material.expansion
-    axes = None if orientation is None else _axes(orientation, dim)
+    axes = None if orientation is None else local_axes(orientation, dim)
     if len(elastic.rows) == 1 and len(expansion.rows) == 1:
         return _one(elastic, expansion, elastic.rows[0][0], axes, material.density)
     several = [rows for rows in (elastic.rows, expansion.rows) if len(rows) > 1]
@@ -76,7 +76,8 @@ def between(rows: Rows, temperature: float) -> tuple[float, ...]:
     return tuple(float(np.interp(temperature, at, column)) for column in values.T)
 
 
-def _axes(given: Orientation, dim: int) -> Axes:
+def local_axes(given: Orientation, dim: int) -> Axes:
+    """Axes of an orientation. Raises InputError for those that leave the plane of a model of two dimensions."""
     if dim == 3:
         if given.kind == "rectangular":
             return Axes(x=given.a, xy=given.b)

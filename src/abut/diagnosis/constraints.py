@@ -65,6 +65,6 @@ def _holding(model: Model, nodes: NDArray[np.int64]) -> str:
     names += [
         f"coupling '{coupling.name}'"
         for coupling in model.couplings
-        if not coupling.distributing and np.isin(nodes, model.mesh.nodes_of(coupling.on)).mean() > MOST
+        if not coupling.distributing and np.isin(nodes, coupling.nodes(model.mesh)).mean() > MOST
     ]
     return " and ".join(dict.fromkeys(names)) or "supports"

@@ -290,6 +290,10 @@ MEANINGS: dict[str, dict[str, str]] = {
         "needs rotations that are prescribed as 0",
         "weights": "distributing on a node set: weight of each point, in the order of their numbers; left out: all the "
         "same. On a surface the area counts",
+        "radius": "points farther than this from the reference, undeformed, are left out; left out: all take part [length]",
+        "axes": "local axes at each undeformed point, whose first, second and third direction x, y and z of follow are",
+        "mirrors": "distributing, of half and quarter models: normals of the planes of symmetry, which the reference lies "
+        "on; loads at it are those on the modelled part",
         "x": "translation of the reference point along x; left out: free [length]",
         "y": "translation of the reference point along y; left out: free [length]",
         "z": "translation of the reference point along z; left out: free [length]",

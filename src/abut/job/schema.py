@@ -125,6 +125,9 @@ class CouplingTable(Table):
     reference: list[Number] | None = None
     follow: list[Literal["x", "y", "z"]] | None = None
     weights: list[Number] | None = None
+    radius: Number | None = None
+    axes: AxesTable | None = None
+    mirrors: list[Literal["x", "y", "z"]] | None = None
     x: Number | None = None
     y: Number | None = None
     z: Number | None = None

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut import checks
+from abut.axes import Axes
 from abut.bodies.loads import area_weights
 from abut.errors import InputError
 from abut.mesh.mesh import Mesh
@@ -16,6 +17,7 @@ from abut.model.conditions import COMPONENTS, TURNS, Amplitude, History, Rigid, 
 
 KINDS = ("kinematic", "distributing")
 AT_MEAN = 1e-9  # of the points' extent: a reference that is their mean
+AT_RADIUS = 1e-9  # of a radius: what rounding may move a point by
 IN_LINE = 1e-6  # of their extent: how far points may lie off a line and still be on it
 
 
@@ -42,6 +44,13 @@ class Coupling:
     weights : sequence of float, optional
         Of a "distributing" one on a node set, one for each point in the order of their numbers; left out: evenly, on a
         surface by area.
+    radius : float, optional
+        Points farther than this from the reference, undeformed, are left out [length]; all take part where left out.
+    axes : Axes, optional
+        Local axes at each point, undeformed, of ``follow``: "x", "y", "z" are then their first, second and third direction.
+    mirrors : sequence of str, optional
+        Of a "distributing" one in a half or quarter model: of "x", "y", "z", the normals of the planes of symmetry, all of
+        which the reference lies on. Loads at it are those on the modelled part.
     x, y, z : float, optional
         Prescribed displacement of the reference [length]; free where left out.
     rx, ry, rz : float, optional
@@ -69,6 +78,9 @@ class Coupling:
     reference: tuple[float, ...] | None = None
     follow: tuple[str, ...] | None = None
     weights: tuple[float, ...] | None = None
+    radius: float | None = None
+    axes: Axes | None = None
+    mirrors: tuple[str, ...] | None = None
     x: float | None = None
     y: float | None = None
     z: float | None = None
@@ -98,6 +110,31 @@ class Coupling:
             if not self.distributing or not weights or min(weights) < 0.0 or not any(weights):
                 raise InputError(f'{where}: weights go with kind = "distributing" and are >= 0, not all of them 0')
             object.__setattr__(self, "weights", weights)
+        self._check_extent(where)
+
+    def _check_extent(self, where: str) -> None:
+        """Radius, axes and mirrors."""
+        if self.radius is not None:
+            checks.positive(self.radius, f"{where}: radius")
+            if self.reference is None:
+                raise InputError(f"{where}: radius is the distance from the reference; give reference")
+        if self.axes is not None and self.follow is None:
+            raise InputError(f"{where}: axes are those of follow; give follow, or take axes out")
+        if self.mirrors is None:
+            return
+        letters = tuple(self.mirrors) if isinstance(self.mirrors, str) else self.mirrors  # type: ignore[unreachable]
+        object.__setattr__(self, "mirrors", checks.listed(letters, f"{where}: mirrors", "components"))
+        for component in self.mirrors or ("",):
+            checks.choice(component, f"{where}: mirrors", COMPONENTS)
+        if not self.distributing:
+            raise InputError(
+                f'{where}: mirrors goes with kind = "distributing"; prescribe the motions that symmetry holds as 0'
+            )
+        if self.reference is None:
+            raise InputError(f"{where}: mirrors: the reference lies on the planes of symmetry; give reference")
+        held = next((name for name in self.given if name not in symmetric(self.mirrors, (*COMPONENTS, *TURNS))), None)
+        if held is not None:
+            raise InputError(f"{where}: {held} is 0 by the symmetry of mirrors; leave it out")
 
     @property
     def distributing(self) -> bool:
@@ -119,13 +156,27 @@ class Coupling:
 
     def shares(self, mesh: Mesh) -> NDArray[np.float64]:
         """Weight of each point, (n,), their sum 1."""
-        nodes = mesh.nodes_of(self.on)
+        nodes = self.nodes(mesh)
         weights = np.ones(len(nodes))
         if self.distributing and self.weights is not None:
-            weights = np.array(self.weights)
+            weights = np.array(self.weights)[np.searchsorted(mesh.nodes_of(self.on), nodes)]
         elif self.distributing and self.on in mesh.surfaces:
             weights = area_weights(mesh.surface(self.on))[nodes]
         return weights / weights.sum()
+
+    def nodes(self, mesh: Mesh) -> NDArray[np.int64]:
+        """Sorted numbers of the points, (n,): of ``on``, within the radius."""
+        nodes = mesh.nodes_of(self.on).astype(np.int64)
+        if self.radius is None or self.reference is None:
+            return nodes
+        away = np.linalg.norm(mesh.points[nodes] - np.array(self.reference), axis=1)
+        return np.asarray(nodes[away <= self.radius * (1.0 + AT_RADIUS)])
+
+
+def symmetric(mirrors: Sequence[str], components: Sequence[str]) -> tuple[str, ...]:
+    """Of the components of a motion, "x" to "rz", those that planes of symmetry with the normals ``mirrors`` leave: along
+    each plane, and turns about its normal."""
+    return tuple(c for c in components if all((c[-1] == normal) == c.startswith("r") for normal in mirrors))
 
 
 def check_couplings(mesh: Mesh, couplings: Sequence[Coupling], rigid: Sequence[Rigid], finite: bool) -> None:
@@ -146,13 +197,18 @@ def check_couplings(mesh: Mesh, couplings: Sequence[Coupling], rigid: Sequence[R
                 raise InputError(f"{where}.{name}: the model is {plane}; leave {name} out")
         if coupling.reference is not None and len(coupling.reference) != mesh.dim:
             raise InputError(f"{where}.reference: expected {mesh.dim} numbers, got {len(coupling.reference)}")
-        if mesh.dim == 2 and "z" in (coupling.follow or ()):
-            raise InputError(f"{where}.follow: the model is 2D; leave z out")
-        nodes = mesh.nodes_of(coupling.on)
-        if coupling.weights is not None and len(coupling.weights) != len(nodes):
+        for key, letters in (("follow", coupling.follow), ("mirrors", coupling.mirrors)):
+            if mesh.dim == 2 and "z" in (letters or ()):
+                raise InputError(f"{where}.{key}: the model is 2D; leave z out")
+        if coupling.axes is not None:
+            coupling.axes.check(mesh.dim, where)
+        count = len(mesh.nodes_of(coupling.on))
+        if coupling.weights is not None and len(coupling.weights) != count:
             raise InputError(
-                f"{where}.weights: expected {len(nodes)} numbers, one for each point, got {len(coupling.weights)}"
+                f"{where}.weights: expected {count} numbers, one for each point, got {len(coupling.weights)}"
             )
+        nodes = coupling.nodes(mesh)
+        _check_points(mesh, coupling, nodes, where)
         if not coupling.distributing and not coupling.partial(mesh):
             shared = next((n for n in nodes.tolist() if n in owner), None)
             if shared is not None:
@@ -172,7 +228,7 @@ def moving_points(mesh: Mesh, rigid: Sequence[Rigid], couplings: Sequence[Coupli
         moved |= dict.fromkeys(_points(mesh, body.body).tolist(), f"rigid body '{body.body}'")
     for coupling in couplings:
         if not coupling.distributing and not coupling.partial(mesh):
-            moved |= dict.fromkeys(mesh.nodes_of(coupling.on).tolist(), f"coupling '{coupling.name}'")
+            moved |= dict.fromkeys(coupling.nodes(mesh).tolist(), f"coupling '{coupling.name}'")
     return moved
 
 
@@ -192,8 +248,33 @@ def _check_name(mesh: Mesh, coupling: Coupling, taken: set[str], where: str) -> 
     taken.add(coupling.name)
 
 
+def _check_points(mesh: Mesh, coupling: Coupling, nodes: NDArray[np.int64], where: str) -> None:
+    """That a radius leaves points that carry weight, and that planes of symmetry have them on one side."""
+    if not len(nodes) or coupling.shares(mesh).sum() <= 0.0 or not np.isfinite(coupling.shares(mesh)).all():
+        every = np.linalg.norm(mesh.points[mesh.nodes_of(coupling.on)] - np.array(coupling.reference), axis=1)
+        raise InputError(
+            f"{where}.radius: no point of '{coupling.on}' that carries weight lies within {coupling.radius:g} of the "
+            f"reference, the nearest at {every.min(initial=np.inf):g}; give a larger radius, or another reference"
+        )
+    if mesh.axisymmetric and coupling.mirrors:
+        raise InputError(
+            f"{where}.mirrors: references of axisymmetric models move along the axis only; take mirrors out"
+        )
+    for normal in coupling.mirrors or ():
+        axis = COMPONENTS.index(normal)
+        away = mesh.points[nodes, axis] - np.array(coupling.reference)[axis]
+        slight = IN_LINE * np.ptp(mesh.points[nodes], axis=0).max(initial=0.0)
+        if away.min() < -slight and away.max() > slight:
+            raise InputError(
+                f"{where}.mirrors: points of '{coupling.on}' lie on both sides of the plane through the reference with the "
+                f"normal {normal}, which is no plane of symmetry then; move the reference, or take '{normal}' out"
+            )
+
+
 def _check_finite(mesh: Mesh, coupling: Coupling, where: str) -> None:
     """What takes equations that finite turns would bend."""
+    if coupling.mirrors:
+        raise InputError(f'{where}.mirrors: halves need small turns; use kinematics = "small", or model the whole')
     turns = TURNS if mesh.dim == 3 else TURNS[2:]
     upright = all(getattr(coupling, name) == 0.0 for name in turns) or mesh.axisymmetric
     if coupling.partial(mesh) and not upright:
@@ -211,7 +292,7 @@ def _check_finite(mesh: Mesh, coupling: Coupling, where: str) -> None:
 
 
 def _at_mean(mesh: Mesh, coupling: Coupling) -> bool:
-    points = mesh.points[mesh.nodes_of(coupling.on)]
+    points = mesh.points[coupling.nodes(mesh)]
     if coupling.reference is None:
         return True
     away = np.array(coupling.reference) - coupling.shares(mesh) @ points

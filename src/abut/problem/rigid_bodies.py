@@ -16,7 +16,8 @@ from abut.dofs import dofs_at, n_dofs
 from abut.errors import InputError
 from abut.mesh.mesh import Mesh
 from abut.model import Coupling, Model
-from abut.model.conditions import History, Rigid
+from abut.model.conditions import COMPONENTS, TURNS, History, Rigid
+from abut.model.coupling import symmetric
 from abut.types import Array, Sparse
 
 LOOSE = 1e-12  # square of what a unit unknown moves points by, over the largest, that counts as nothing
@@ -26,8 +27,9 @@ SLIGHT = 1e-6  # of loads: what rounding may lose
 @dataclass(frozen=True)
 class RigidBody:
     """nodes: (n,) of the body or coupling; reference, centre: (dim,); size: largest distance of a node from the centre;
-    weights: (n,) of the nodes in their mean, sum 1; follow: (dim,) components in which they follow. The unknowns q
-    are translations of the centre and turns times ``size``, so that none moves a point by more than its value."""
+    weights: (n,) of the nodes in their mean, sum 1; follow: (dim,) components in which they follow, along ``frames``
+    (n, dim, dim) if there are any. The unknowns q are translations of the centre and turns times ``size``, so that none
+    moves a point by more than its value."""
 
     rigid: Rigid | Coupling
     nodes: NDArray[np.int64]
@@ -38,6 +40,7 @@ class RigidBody:
     axisymmetric: bool
     weights: NDArray[np.float64]
     follow: NDArray[np.bool_]
+    frames: NDArray[np.float64] | None = None
 
     @property
     def name(self) -> str:
@@ -80,6 +83,32 @@ class RigidBody:
         """Displacement of points (n, dim) by the unknowns, (n, dim, n_unknowns)."""
         return motions((points - self.centre) / self.size, self.axisymmetric)
 
+    def along(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Components of vectors at the points, (n, dim, m), in which these follow: (n, n_followed, m)."""
+        return np.asarray((values if self.frames is None else self.frames @ values)[:, self.follow])
+
+    def followed(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The part of vectors at the points, (n, dim, m), that they follow: as large."""
+        if self.frames is None:
+            return values * self.follow[:, None]
+        return np.asarray(self.frames[:, self.follow].transpose(0, 2, 1) @ self.along(values))
+
+    def held(self, forces: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Of forces at all points, (n_points, dim), what the reference takes."""
+        result = np.zeros_like(forces)
+        if self.holds:
+            result[self.nodes] = self.followed(forces[self.nodes][:, :, None])[:, :, 0]
+        return result
+
+    @property
+    def mirrors(self) -> tuple[str, ...]:
+        """Normals of the planes of symmetry of which the points are one side."""
+        return (self.rigid.mirrors or ()) if isinstance(self.rigid, Coupling) else ()
+
+    def _left(self, components: Sequence[str]) -> NDArray[np.bool_]:
+        """Which components of a motion, force or moment the planes of symmetry leave."""
+        return np.isin(components, symmetric(self.mirrors, components))
+
     def columns(self, size: int) -> Sparse:
         """Displacement of all points of the mesh by the unknowns, (dim n_points, n_unknowns) sparse; none where points
         follow by equations."""
@@ -115,7 +144,7 @@ class RigidBody:
     def loose(self, given: NDArray[np.float64]) -> NDArray[np.float64]:
         """Combinations (k, n_unknowns) of the unknowns that move no point and that rows ``given`` (m, n_unknowns) leave
         free: turns about the line that all points lie on, say."""
-        moved = self.moved(self.points)[:, self.follow].reshape(-1, len(self.components))
+        moved = self.along(self.moved(self.points)).reshape(-1, len(self.components))
         gram = moved.T @ moved / max(len(self.points), 1) + given.T @ given
         sizes, basis = np.linalg.eigh(gram)
         return np.asarray(basis[:, sizes <= LOOSE * sizes[-1]].T)
@@ -124,9 +153,9 @@ class RigidBody:
         """Forces at the points, (dim n, n_unknowns), that do the work of a unit force on each of the unknowns, or of the
         combinations ``among`` (n_unknowns, k) of them only: theory (F14); transposed, the mean motion by the displacements
         of the points."""
-        moved = self.moved(self.points) * self.follow[:, None]
+        moved = self.followed(self.moved(self.points))
         weighted = (self.weights[:, None, None] * moved).reshape(-1, len(self.components))
-        basis = np.eye(len(self.components)) if among is None else among
+        basis = np.eye(len(self.components))[:, self._left(self.components)] if among is None else among
         inertia = basis.T @ (weighted.T @ moved.reshape(weighted.shape)) @ basis
         return np.asarray(weighted @ basis @ np.linalg.pinv(inertia, rcond=LOOSE, hermitian=True) @ basis.T)
 
@@ -137,8 +166,8 @@ class RigidBody:
         Raises InputError where they do work on a motion that moves no point."""
         work = self.moved(self.reference[None])[0].T @ force
         work[len(force) :] += moment[: len(work) - len(force)] / self.size
-        moved = (self.moved(self.points) * self.follow[:, None]).reshape(-1, len(work))
-        for among in (None, self._open()):
+        moved = self.followed(self.moved(self.points)).reshape(-1, len(work))
+        for among in self._choices(force, moment):
             at_points = self.spreading(among) @ work
             lost = moved.T @ at_points - work if among is None else among.T @ (moved.T @ at_points - work)
             if np.abs(lost).max(initial=0.0) <= SLIGHT * np.abs(work).max(initial=0.0):
@@ -147,6 +176,24 @@ class RigidBody:
             f"loads on {self.words}: they act on a motion of the reference that moves none of its points; prescribe that "
             "motion, move the reference, or couple more points"
         )
+
+    def _choices(
+        self, force: NDArray[np.float64], moment: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64] | None, ...]:
+        """Combinations of the unknowns in which a load is to be equivalent, the first that can be; None: all. Raises
+        InputError for a load across a plane of symmetry."""
+        if not self.mirrors:
+            return (None, self._open())
+        turns = TURNS[2:] if len(force) == 2 else TURNS
+        names = (*COMPONENTS[: len(force)], *turns)
+        load = np.concatenate([force, moment[: len(turns)]])
+        across = [name for name, value, left in zip(names, load, self._left(names), strict=True) if value and not left]
+        if across:
+            raise InputError(
+                f"loads on {self.words}: {', '.join(across)} is not symmetric about the planes of mirrors, "
+                f"{', '.join(self.mirrors)}; take it out, or model the whole"
+            )
+        return (np.eye(len(self.components))[:, self._left(self.components)],)
 
     def _open(self) -> NDArray[np.float64]:
         """Combinations (n_unknowns, k) of the unknowns that are not prescribed."""
@@ -196,6 +243,10 @@ class RigidBody:
             arm = arm + displacement[self.nodes] - self.turned(displacement)[0]
         if self.axisymmetric:
             return at_nodes.sum(axis=0), np.zeros(1)
+        if self.mirrors:  # the other side takes the rest
+            force, moment = at_nodes.sum(axis=0), np.cross(arm, at_nodes).reshape(len(arm), -1).sum(axis=0)
+            turns = TURNS[2:] if len(force) == 2 else TURNS
+            return force * self._left(COMPONENTS[: len(force)]), moment * self._left(turns)
         if at_nodes.shape[1] == 2:
             return at_nodes.sum(axis=0), np.array([(arm[:, 0] * at_nodes[:, 1] - arm[:, 1] * at_nodes[:, 0]).sum()])
         return at_nodes.sum(axis=0), np.cross(arm, at_nodes).sum(axis=0)
@@ -212,11 +263,13 @@ def nodes_of_body(mesh: Mesh, body: str) -> NDArray[np.int64]:
 
 
 def _body(model: Model, rigid: Rigid | Coupling) -> RigidBody:
-    mesh, follow = model.mesh, np.ones(model.dim, bool)
+    mesh, follow, frames = model.mesh, np.ones(model.dim, bool), None
     if isinstance(rigid, Coupling):
-        nodes, weights = mesh.nodes_of(rigid.on).astype(np.int64), rigid.shares(mesh)
+        nodes, weights = rigid.nodes(mesh), rigid.shares(mesh)
         if rigid.follow is not None:
             follow = np.array([axis in rigid.follow for axis in "xyz"[: model.dim]])
+        if rigid.axes is not None:
+            frames = rigid.axes.frames(mesh.points[nodes])
     else:
         nodes = nodes_of_body(mesh, rigid.body)
         weights = np.full(len(nodes), 1.0 / len(nodes))
@@ -233,6 +286,7 @@ def _body(model: Model, rigid: Rigid | Coupling) -> RigidBody:
         axisymmetric=mesh.axisymmetric,
         weights=weights,
         follow=follow,
+        frames=frames,
     )
     if model.finite and not body.mean:  # so that translations do not depend on finite turns
         return replace(body, centre=reference)
@@ -266,7 +320,16 @@ def body_rows(
     values = np.concatenate([values, np.zeros((len(loose), values.shape[1]))])
     if body.whole:
         return Rows(matrix, values)
-    kept = dofs.reshape(body.points.shape)[:, body.follow].ravel()
-    moved = body.moved(body.points)[:, body.follow].reshape(len(kept), -1)
-    following = (free[kept] - sp.csr_matrix(moved) @ shift).tocsr()
-    return Rows(sp.vstack([matrix, following], format="csr"), np.concatenate([values, -prescribed[kept]]))
+    chosen = _chosen(body)
+    moved = body.along(body.moved(body.points)).reshape(chosen.shape[0], -1)
+    following = (chosen @ free[dofs] - sp.csr_matrix(moved) @ shift).tocsr()
+    return Rows(sp.vstack([matrix, following], format="csr"), np.concatenate([values, -(chosen @ prescribed[dofs])]))
+
+
+def _chosen(body: RigidBody) -> Sparse:
+    """The components in which points follow, by the displacements of the points: (n n_followed, n dim)."""
+    count, dim = body.points.shape
+    rows = np.broadcast_to(np.eye(dim), (count, dim, dim)) if body.frames is None else body.frames
+    chosen = sp.block_diag(list(rows[:, body.follow]), format="csr")
+    chosen.eliminate_zeros()
+    return sp.csr_matrix(chosen)

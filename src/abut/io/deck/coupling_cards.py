@@ -8,10 +8,11 @@ import numpy as np
 
 from abut.errors import nearest
 from abut.io.deck.cards import Card, key, of
+from abut.io.deck.elastic_cards import orientation
 from abut.io.deck.mesh_cards import MeshCards
 from abut.io.deck.model_cards import one_node
 from abut.io.deck.reasons import Reasons
-from abut.io.deck.record import Coupling, Numbers
+from abut.io.deck.record import Coupling, Numbers, Orientation
 
 NONE = np.empty(0, np.int64)
 KINDS = ("KINEMATIC", "DISTRIBUTING")
@@ -24,9 +25,9 @@ def couplings(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple
     for i, card in enumerate(cards):
         with reasons.gathered():
             if card.key == "COUPLING":
-                result.append(_coupling(card, cards[i + 1] if i + 1 < len(cards) else None, mesh))
+                result.append(_coupling(card, cards, cards[i + 1] if i + 1 < len(cards) else None, mesh))
             elif card.key == "KINEMATICCOUPLING":
-                result += _by_lines(card, mesh)
+                result += _by_lines(card, cards, mesh)
             elif card.key == "DISTRIBUTINGCOUPLING":
                 result.append(_weighted(card, cards, mesh))
             elif card.key in KINDS and (i == 0 or cards[i - 1].key != "COUPLING"):
@@ -34,7 +35,7 @@ def couplings(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple
     return tuple(result)
 
 
-def _coupling(card: Card, following: Card | None, mesh: MeshCards) -> Coupling:
+def _coupling(card: Card, cards: Sequence[Card], following: Card | None, mesh: MeshCards) -> Coupling:
     reference, name = one_node(card, "REF NODE", mesh), card.need("SURFACE")
     if name.upper() not in mesh.surfaces:
         raise card.unknown(f"no surface named {name!r}{nearest(name, [s.name for s in mesh.surfaces.values()])}")
@@ -51,10 +52,43 @@ def _coupling(card: Card, following: Card | None, mesh: MeshCards) -> Coupling:
         )
     if key(following.get("COUPLING", "CONTINUUM") or "") != "CONTINUUM":
         raise following.error("COUPLING=STRUCTURAL: solids have displacements only; take CONTINUUM")
-    if card.has("ORIENTATION") and (distributing or not {1, 2, 3} <= directions):
-        raise card.error("ORIENTATION: axes of its own are not read; couple all directions, or along the global axes")
+    if card.has("ORIENTATION") and distributing:
+        raise card.error("ORIENTATION: a mean motion has no axes of its own; take it out, or use *KINEMATIC")
     label = card.get("CONSTRAINT NAME") or f"coupling of {surface.name}"
-    return Coupling(label, distributing, reference, surface.name, NONE, directions, None, card.place)
+    return Coupling(
+        label, distributing, reference, surface.name, NONE, directions, None, card.place,
+        radius=_radius(card), orientation=_axes(card, cards, directions),
+    )  # fmt: skip
+
+
+def _radius(card: Card) -> float | None:
+    if not card.has("INFLUENCE RADIUS"):
+        return None
+    given = card.get("INFLUENCE RADIUS") or ""
+    try:
+        radius = float(given)
+    except ValueError:
+        radius = 0.0
+    if not 0.0 < radius < np.inf:
+        raise card.error(f"INFLUENCE RADIUS: expected a number > 0, got {given!r}")
+    return radius
+
+
+def _axes(card: Card, cards: Sequence[Card], directions: frozenset[int]) -> Orientation | None:
+    """Of a coupling of some directions; nothing turns where nodes follow in all of them."""
+    name = card.get("ORIENTATION")
+    if name is None or {1, 2, 3} <= directions:
+        return None
+    known = {label.upper(): other for other in of(cards, "ORIENTATION") if (label := other.get("NAME"))}
+    if name.upper() not in known:
+        raise card.unknown(f"no orientation named {name!r}{nearest(name.upper(), known)}")
+    axes = orientation(known[name.upper()])
+    if axes.kind != "rectangular":
+        raise card.error(
+            "ORIENTATION: codes differ in where cylindrical axes of a coupling are taken; give SYSTEM=RECTANGULAR, or "
+            "couple all directions"
+        )
+    return axes
 
 
 def _directions(card: Card) -> frozenset[int]:
@@ -70,7 +104,7 @@ def _directions(card: Card) -> frozenset[int]:
     return frozenset(result) or ALL
 
 
-def _by_lines(card: Card, mesh: MeshCards) -> Iterator[Coupling]:
+def _by_lines(card: Card, cards: Sequence[Card], mesh: MeshCards) -> Iterator[Coupling]:
     """*KINEMATIC COUPLING: nodes and directions, line by line."""
     reference = one_node(card, "REF NODE", mesh)
     alike: dict[frozenset[int], list[Numbers]] = {}
@@ -84,8 +118,6 @@ def _by_lines(card: Card, mesh: MeshCards) -> Iterator[Coupling]:
                 raise line.error(f"directions {first} to {last}: expected numbers from 1 to 6, in order")
             directions = frozenset(range(first, last + 1))
         alike.setdefault(directions, []).append(mesh.existing(line, 0))
-    if card.has("ORIENTATION") and any(not {1, 2, 3} <= directions for directions in alike):
-        raise card.error("ORIENTATION: axes of its own are not read; couple all directions, or along the global axes")
     for directions, nodes in alike.items():
         yield Coupling(
             f"coupling to {reference}",
@@ -96,6 +128,7 @@ def _by_lines(card: Card, mesh: MeshCards) -> Iterator[Coupling]:
             directions,
             None,
             card.place,
+            orientation=_axes(card, cards, directions),
         )
 
 

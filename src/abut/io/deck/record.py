@@ -224,7 +224,8 @@ class RigidBody:
 class Coupling:
     """Nodes, or those of a surface ("": none), that move with a reference node: as a rigid body in ``directions`` 1..6, or
     freely with its motion as their mean (distributing), by weights (n,) of the nodes or, None, by area; more: others of the
-    same reference; weighted: it is a *DISTRIBUTING COUPLING."""
+    same reference; weighted: it is a *DISTRIBUTING COUPLING; radius: beyond which nodes are left out; orientation: axes of
+    ``directions`` 1..3, rectangular, None for the global ones."""
 
     name: str
     distributing: bool
@@ -236,6 +237,8 @@ class Coupling:
     place: Place
     more: tuple[Coupling, ...] = ()
     weighted: bool = False
+    radius: float | None = None
+    orientation: Orientation | None = None
 
 
 @dataclass(frozen=True)

@@ -99,7 +99,6 @@ PARAMETERS = {  # of cards that are read
     ("TIE", "MULTISTAGE"): "multistage ties are not supported; model one stage",
     ("TIE", "FLUIDCYCLIC"): _FLOW,
     ("TIE", "FLUIDPERIODIC"): _FLOW,
-    ("COUPLING", "INFLUENCERADIUS"): "a radius is not read; give a surface of the nodes that it holds",
     ("FRICTION", "TAUMAX"): "a largest shear stress is not read; give the coefficient over pressure, line by line",
     ("FRICTION", "EXPONENTIALDECAY"): "a coefficient over the slip rate is not supported; give one",
     ("FRICTION", "ANISOTROPIC"): "friction that depends on the direction is not supported; give one coefficient",
