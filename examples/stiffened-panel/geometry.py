@@ -14,14 +14,9 @@ from numpy.typing import NDArray
 PANEL, RIB = 2.0, 6.0  # thicknesses; the panel's middle is z = 0, the rib lies on it
 BOLTS = (30.0, 90.0, 150.0, 210.0)  # places along x, on y = 0; the panel goes from 0 to 240
 SHANK, HOLE, HEAD, HIGH = 3.0, 4.0, 8.0, 4.0  # halves of widths, height of head and nut
-BESIDE = np.array([-8.0, -6.0, -4.0, -2.0, 0.0, 2.0, 4.0, 6.0, 8.0, 12.0, 19.0, 26.0])  # lines about each bolt
-BETWEEN = np.array([34.0, 41.0, 48.0])
-X = np.unique(np.concatenate([[0.0, 9.0, 18.0], *(b + BESIDE for b in BOLTS), *(b + BETWEEN for b in BOLTS[:-1])]))
-X[-1] = 240.0  # where the panel ends
-INNER, OUTER = (
-    [-12.0, -8.0, -6.0, -4.0, -2.0, 0.0, 2.0, 4.0, 6.0, 8.0, 12.0],
-    [26.0, 40.0],
-)  # along y: of the rib, and of the panel beyond
+BESIDE = np.array([-30.0, -19.0, -8.0, -4.0, 0.0, 4.0, 8.0, 19.0, 30.0])  # lines about each bolt
+X = np.unique(np.concatenate([b + BESIDE for b in BOLTS]))
+INNER, OUTER = [-12.0, -8.0, -4.0, 0.0, 4.0, 8.0, 12.0], [26.0, 40.0]  # along y: of the rib, and of the panel beyond
 HEX20, QUAD8, QUAD4, LINE2 = 17, 16, 3, 1  # Gmsh's types
 EDGES = ((0, 1), (0, 3), (0, 4), (1, 2), (1, 5), (2, 3), (2, 6), (3, 7), (4, 5), (4, 7), (5, 6), (6, 7))  # Gmsh's order
 Points, Numbers = NDArray[np.float64], NDArray[np.int64]

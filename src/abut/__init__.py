@@ -58,6 +58,7 @@ if TYPE_CHECKING:
     from abut.output.results import write
     from abut.report import write_report
     from abut.solution import Solution
+    from abut.solution.beam_forces import BeamForces, beam_forces
     from abut.solution.load_factor import LoadFactor, load_factors
     from abut.solution.mid_surface import MidSurface, mid_surface
     from abut.thin.records import Beam, MidForce, MidSupport, Shell, Thick
@@ -81,17 +82,19 @@ _HOME = {  # of public names that do not come from abut.model
     **dict.fromkeys(("LoadFactor", "load_factors"), "abut.solution.load_factor"),
     **dict.fromkeys(("Stop", "Stopped", "add_stops"), "abut.model.stop"),
     **dict.fromkeys(("MidSurface", "mid_surface"), "abut.solution.mid_surface"),
+    **dict.fromkeys(("BeamForces", "beam_forces"), "abut.solution.beam_forces"),
 }  # fmt: skip
 
 __all__ = [
-    "AbutError", "Amplitude", "Anisotropic", "ArrudaBoyce", "Axes", "Beam", "BodyForce", "Buckling", "Centrifugal",
-    "Contact", "ConvergenceError", "Coupling", "Equation", "Force", "FoundContact", "Frequencies", "Gravity", "Hencky",
-    "Hold", "InputError", "Integration", "LinearElastic", "LoadFactor", "Mesh", "MidForce", "MidSupport", "MidSurface",
-    "Model", "Moment", "MooneyRivlin", "NeoHooke", "NodalForce", "Ogden", "Orthotropic", "Output", "OverTemperature",
-    "Penetration", "Plastic", "Preload", "Pressure", "PressureOverclosure", "Probe", "Removal", "Rigid", "Rotation",
-    "Shell", "SingularModelError", "Solid", "Solution", "SolveOptions", "Spring", "Stop", "Stopped", "Support",
-    "Temperature", "Term", "Thick", "Traction", "Yeoh", "add_stops", "add_surfaces", "check", "find_contacts", "from_meshio",
-    "load_factors", "mid_surface", "plot", "solve", "thicken", "to_pyvista", "write", "write_report",
+    "AbutError", "Amplitude", "Anisotropic", "ArrudaBoyce", "Axes", "Beam", "BeamForces", "BodyForce", "Buckling",
+    "Centrifugal", "Contact", "ConvergenceError", "Coupling", "Equation", "Force", "FoundContact", "Frequencies",
+    "Gravity", "Hencky", "Hold", "InputError", "Integration", "LinearElastic", "LoadFactor", "Mesh", "MidForce",
+    "MidSupport", "MidSurface", "Model", "Moment", "MooneyRivlin", "NeoHooke", "NodalForce", "Ogden", "Orthotropic",
+    "Output", "OverTemperature", "Penetration", "Plastic", "Preload", "Pressure", "PressureOverclosure", "Probe",
+    "Removal", "Rigid", "Rotation", "Shell", "SingularModelError", "Solid", "Solution", "SolveOptions", "Spring",
+    "Stop", "Stopped", "Support", "Temperature", "Term", "Thick", "Traction", "Yeoh", "add_stops", "add_surfaces",
+    "beam_forces", "check", "find_contacts", "from_meshio", "load_factors", "mid_surface", "plot", "solve", "thicken",
+    "to_pyvista", "write", "write_report",
 ]  # fmt: skip
 
 

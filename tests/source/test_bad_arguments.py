@@ -18,7 +18,7 @@ from abut.mesh import make
 BARE = (AttributeError, KeyError, IndexError, TypeError, ValueError)
 NOTHING = (None, 3, "", 3.5, [], {})  # what a user may have in a variable that should hold something else
 ERRORS = {name for name in abut.__all__ if isinstance(getattr(abut, name), type) and "Error" in name}
-RESULTS = {"FoundContact", "LoadFactor", "MidSurface", "Solution", "Stopped", "Thick"}  # abut makes these
+RESULTS = {"BeamForces", "FoundContact", "LoadFactor", "MidSurface", "Solution", "Stopped", "Thick"}  # abut makes these
 LISTS = (
     "solids", "supports", "loads", "contacts", "equations", "rigid", "probes", "rotations", "couplings", "preloads",
     "springs", "holds", "penetrations",
@@ -104,6 +104,7 @@ VALID: dict[str, tuple[dict[str, Any], Callable[[Any], object]]] = {  # argument
     "from_meshio": ({"mesh": SimpleNamespace(points=MESH.points, cells=[("quad", b.nodes) for b in MESH.blocks])}, kept),
 }  # fmt: skip
 OF_SOLUTIONS = {
+    "beam_forces",
     "load_factors",
     "mid_surface",
     "plot",
