@@ -71,7 +71,7 @@ def cells(cards: Sequence[Card]) -> str:
 
 def _numbers(kind: str) -> int:
     """Element number and nodes."""
-    if kind.startswith(("SPRING", "B31", "T3D2")):
+    if kind.startswith(("SPRING", "GAP", "B31", "T3D2")):
         return 1 + 2
     if kind.startswith(("B32", "T3D3")):
         return 1 + 3

@@ -168,7 +168,7 @@ def test_adjusted_nodes_lie_on_the_master_surface() -> None:
         ("*DYNAMIC", "dynamics"),
         ("*HEAT TRANSFER", "heat transfer"),
         ("*FLUID CONSTANTS", "flow of fluids"),
-        ("*GAP", "gap elements"),
+        ("*SUBSTRUCTURE GENERATE", "substructures"),
         ("*CHANGE SOLID SECTION", "elements, materials and contact laws that change"),
     ],
 )

@@ -157,13 +157,21 @@ def test_rubber(tmp_path: Path) -> None:
         "this kind of rubber elasticity is not supported": text.replace("NEO HOOKE", "VAN DER WAALS"),
         "POLYNOMIAL is supported with N=1 only": text.replace("NEO HOOKE", "POLYNOMIAL, N=2"),
         "the kind is missing": text.replace(", NEO HOOKE", ""),
-        "D1: expected a number > 0": text.replace("3., 0.01", "3."),
+        "D1: expected a number > 0": text.replace("3., 0.01", "3., -1."),
         "C10: expected a number > 0": text.replace("3., 0.01", "-3., 0.01"),
         "has \\*ELASTIC as well": text.replace("*HYPERELASTIC", "*ELASTIC\n1., 0.\n*HYPERELASTIC"),
     }
     for words, own in refused.items():
         with pytest.raises(InputError, match=words):
             load(tmp_path, own)
+
+
+def test_rubber_of_which_nothing_is_said_in_volume(tmp_path: Path) -> None:
+    """Poisson's ratio .475, about: K = 20 mu, as CalculiX's manual has it; a note says so."""
+    text = LARGE.replace("*ELASTIC\n1000., 0.", "*HYPERELASTIC, NEO HOOKE\n3., 0.")
+    job = load(tmp_path, text)
+    assert job.model.solids[0].material.bulk == pytest.approx(20.0 * 6.0, rel=1e-12)
+    assert any("D1 = 0 is taken as" in note for note in job.notes)
 
 
 @pytest.mark.parametrize(

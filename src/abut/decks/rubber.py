@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from abut.io.deck.record import Rubber
+from abut.io.deck.record import Deck, Rubber
 from abut.materials.hyperelastic import NeoHooke
 from abut.materials.material import Material
 from abut.materials.rubber import ArrudaBoyce, MooneyRivlin, Ogden, Yeoh
@@ -22,3 +22,14 @@ LAWS: Mapping[str, Callable[[Constants, Constants, tuple[float, float]], Materia
 def of_rubber(rubber: Rubber, rest: tuple[float, float]) -> Material:
     """rest: density and expansion. Raises InputError for constants that no material has."""
     return LAWS[rubber.kind](rubber.constants, rubber.volume, rest)
+
+
+def rubber_notes(deck: Deck) -> list[str]:
+    """What volume changes are resisted by where a deck says nothing of it."""
+    materials = {section.material.name: section.material for section in deck.sections}
+    return [
+        f"{material.place}: *MATERIAL '{name}': D1 = 0 is taken as 0.1 over the shear modulus, Poisson's ratio .475, as "
+        "CalculiX does; Abaqus means no change of volume at all (hybrid elements)"
+        for name, material in materials.items()
+        if material.rubber is not None and material.rubber.assumed
+    ]

@@ -17,38 +17,54 @@ from abut.io.deck.time_histories import courses, zero
 from abut.model import Spring as ModelSpring
 
 AXES = "xyz"
+RIGID = 1000.0  # stiffness of a gap without one, over that of a cube of the stiffest material as large as the model
 
 
 @dataclass(frozen=True)
 class _Scene:
-    """What ends of springs are looked up in. still: (node, direction) that are held in place."""
+    """What ends of springs are looked up in. stiff: stiffness
+    of what counts as rigid; still: (node, direction) that are held in place."""
 
     deck: Deck
     groups: Groups
     dim: int
     thickness: float
+    stiff: float
     still: frozenset[tuple[int, int]]
 
 
 def spring_notes(deck: Deck) -> list[str]:
     """What is solved otherwise than in CalculiX."""
-    return [
-        f"{spring.place}: *SPRING: NONLINEAR without NLGEOM follows its table; CalculiX's results are "
+    notes = [
+        f"{spring.place}: {spring.title}: what is not linear follows its table without NLGEOM, too; CalculiX's results are "
         "those of the slope at no elongation"
         for spring in deck.springs
         if not isinstance(spring.law, float) and not any(step.finite for step in deck.steps)
     ]
+    rigid = [spring for spring in deck.springs if spring.rigid]
+    return notes + [
+        f"{spring.place}: *GAP: without a spring constant the gap is {RIGID:g} times as stiff as a cube of the stiffest "
+        "material as large as the model, without tension when open; CalculiX takes 1e12 and 1e-3"
+        for spring in rigid
+    ]
 
 
-def springs(deck: Deck, groups: Groups, plane: str | None, thickness: float) -> Iterator[ModelSpring]:
+def springs(deck: Deck, groups: Groups, plane: str | None, thickness: float, modulus: float) -> Iterator[ModelSpring]:
     """Springs between nodes of elements, and to nodes of none that are held, which are the ground. Springs of one card are
-    together as far as they go to different nodes in order.
+    together as far as they go to different nodes in order. modulus: of the stiffest material.
 
     Raises InputError for ends that nothing holds and for what a model cannot hold."""
     if not deck.springs:
         return
     held = {(int(n), int(d)) for (n, d), course in courses(deck, "boundary").items() if zero(course)}
-    scene = _Scene(deck, groups, 2 if plane else 3, thickness, frozenset(held))
+    scene = _Scene(
+        deck,
+        groups,
+        2 if plane else 3,
+        thickness,
+        RIGID * modulus * float(np.ptp(deck.points, axis=0).max()),
+        frozenset(held),
+    )
     for spring in deck.springs:
         _check(deck, spring, plane)
         try:
@@ -56,34 +72,34 @@ def springs(deck: Deck, groups: Groups, plane: str | None, thickness: float) -> 
         except DeckError:
             raise
         except InputError as error:
-            raise DeckError(spring.place, f"*SPRING: {str(error).partition(': ')[2]}") from None
+            raise DeckError(spring.place, f"{spring.title}: {str(error).partition(': ')[2]}") from None
 
 
 def _check(deck: Deck, spring: Spring, plane: str | None) -> None:
     """Raise InputError for springs of kinds that abut does not have."""
     if plane == "axisymmetric":
         raise DeckError(
-            spring.place, "*SPRING: springs of axisymmetric models are not read; load the nodes with *CLOAD"
+            spring.place, f"{spring.title}: springs of axisymmetric models are not read; load the nodes with *CLOAD"
         )
     if plane is not None and 3 in spring.directions:
-        raise DeckError(spring.place, "*SPRING: direction 3: the model is plane; take the spring out")
+        raise DeckError(spring.place, f"{spring.title}: direction 3: the model is plane; take the spring out")
     if spring.code == "SPRINGA" and any(step.finite for step in deck.steps):
         raise DeckError(
             spring.place,
-            "*SPRING: SPRINGA turns with its ends with NLGEOM, abut's springs keep their direction; give SPRING2 where ends "
-            "do not turn, or solve with --ignore NLGEOM",
+            f"{spring.title}: SPRINGA turns with its ends with NLGEOM, abut's springs keep their direction; give SPRING2 "
+            "where ends do not turn, or solve with --ignore NLGEOM",
         )
     for node in np.unique(spring.ends).tolist():
         if node in deck.references:
             raise DeckError(
                 spring.place,
-                f"*SPRING: node {node} is the reference of a rigid body or coupling, and springs are between nodes of "
-                "elements; attach it to one of its points",
+                f"{spring.title}: node {node} is the reference of a rigid body or coupling, and springs are between "
+                "nodes of elements; attach it to one of its points",
             )
         if spring.directions and any(node in transform.nodes for transform in deck.transforms):
             raise DeckError(
                 spring.place,
-                f"*SPRING: node {node} has axes of its own (*TRANSFORM), which springs do not take in every "
+                f"{spring.title}: node {node} has axes of its own (*TRANSFORM), which springs do not take in every "
                 "code (CalculiX does not take them); take it out of *TRANSFORM",
             )
 
@@ -100,7 +116,9 @@ def _translated(scene: _Scene, spring: Spring) -> Iterator[ModelSpring]:
             if node not in used:
                 _check_held(scene, spring, number, node)
         if not inside:
-            raise DeckError(spring.place, f"*SPRING: element {number}: no end is a node of an element; take it out")
+            raise DeckError(
+                spring.place, f"{spring.title}: element {number}: no end is a node of an element; take it out"
+            )
         if len(inside) == 2:
             between.append((number, *inside))
             continue
@@ -111,7 +129,7 @@ def _translated(scene: _Scene, spring: Spring) -> Iterator[ModelSpring]:
         elif other is not None and ends[0] == other and not isinstance(spring.law, float):
             raise DeckError(
                 spring.place,
-                f"*SPRING: element {number}: with NONLINEAR give the node that moves first, then the fixed one",
+                f"{spring.title}: element {number}: with NONLINEAR give the node that moves first, then the fixed one",
             )
         ground.setdefault(point, []).append((number, inside[0]))
     for point, each in ground.items():
@@ -126,8 +144,8 @@ def _check_held(scene: _Scene, spring: Spring, number: int, node: int) -> None:
         if (node, direction) not in scene.still:
             raise DeckError(
                 spring.place,
-                f"*SPRING: element {number}: node {node} belongs to no element and is not held in direction {direction}; "
-                f"hold it with *BOUNDARY, so that it is the ground",
+                f"{spring.title}: element {number}: node {node} belongs to no element and is not held in direction "
+                f"{direction}; hold it with *BOUNDARY, so that it is the ground",
             )
 
 
@@ -178,6 +196,9 @@ def _law(scene: _Scene, spring: Spring, count: int) -> Mapping[str, Any]:
     if isinstance(spring.law, float):
         return {key: spring.law * times}
     (first, low), (last, high) = spring.law[0], spring.law[-1]
+    if spring.code == "GAPUNI":  # on beyond its ends
+        times *= scene.stiff if spring.rigid else 1.0
+        return {key: [(u, f * times) for u, f in spring.law]}
     width = last - first
     table = [(first - width, low), *spring.law, (last + width, high)] if width > 0.0 else spring.law
     return {key: [(u, f * times) for u, f in table]}

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from abut.decks.solid_blocks import free_numbers, sections_of, with_solids
 from abut.io.deck.reasons import DeckError
-from abut.io.deck.record import Block, Coupling, Deck, Faces, Numbers, Prescribed, Section, Thin
+from abut.io.deck.record import Block, Coupling, Deck, Faces, Numbers, Prescribed, Section, Spring, Thin
 from abut.mesh.thin.shells import Expanded, Shell, expand
 
 Vector = NDArray[np.float64]
@@ -172,11 +172,7 @@ def renamed(deck: Deck, stand_for: Mapping[int, Numbers], heights: Mapping[int, 
     def of_surface(surface: Faces) -> Faces:
         return surface if surface.nodes is None else replace(surface, nodes=all_of(surface.nodes))
 
-    for spring in deck.springs:
-        if np.isin(spring.ends, shells).any():
-            raise DeckError(
-                spring.place, "*SPRING: springs on nodes of shells and beams are not supported; use nodes of solids"
-            )
+    springs = tuple(_on_solids(deck, spring, shells) for spring in deck.springs)
     initial = dict(deck.initial)
     for node, nodes in stand_for.items():
         if node in initial:
@@ -188,11 +184,27 @@ def renamed(deck: Deck, stand_for: Mapping[int, Numbers], heights: Mapping[int, 
         rigid=tuple(replace(body, nodes=all_of(body.nodes)) for body in deck.rigid),
         couplings=tuple(_of_solids(bound, stand_for, all_of(bound.nodes)) for bound in deck.couplings),
         initial=initial,
+        springs=springs,
         steps=tuple(
             replace(step, values=tuple(v for value in step.values for v in of_temperature(value)))
             for step in deck.steps
         ),
     )
+
+
+def _on_solids(deck: Deck, spring: Spring, shells: Numbers) -> Spring:
+    """A spring on the nodes halfway through the thickness, at corners of shells."""
+    ends = spring.ends.copy()
+    for node in np.intersect1d(ends, shells).tolist():
+        middle = deck.thin[node].middle if node in deck.thin else 0
+        if not middle:
+            raise DeckError(
+                spring.place,
+                f"{spring.title}: node {node}: springs on beams, trusses, knots and the middle of a shell's edge are not "
+                "supported; use corners of shells, or nodes of solids",
+            )
+        ends[spring.ends == node] = middle
+    return replace(spring, ends=ends)
 
 
 def _warm(value: Prescribed, node: int, height: float) -> Prescribed:

@@ -25,9 +25,10 @@ from abut.decks.modes import loading_notes, modes, with_stiff_beams
 from abut.decks.nodal import equations, forces, supports
 from abut.decks.output import output_options, tables, with_tables
 from abut.decks.overclosure import overclosure_notes, own_laws, softened
+from abut.decks.passing import passing_notes, removals
 from abut.decks.plane import plane_of, thickness
 from abut.decks.rigid import join, rigid_bodies, with_parts_coupled
-from abut.decks.rubber import of_rubber
+from abut.decks.rubber import of_rubber, rubber_notes
 from abut.decks.springs import spring_notes, springs
 from abut.decks.temperatures import history, temperatures
 from abut.decks.tied_nodes import SAME_WAY, looks, with_ties_by_node
@@ -105,6 +106,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     notes += [*element_notes(deck), *loading_notes(deck)]
     deck = cut(expanded(deck, is_finite(deck)))
     notes = [*deck.notes, *notes, *overclosure_notes(deck, soft), *finite_notes(deck), *spring_notes(deck)]
+    notes += [*passing_notes(deck), *rubber_notes(deck)]
     made = pieces(deck)
     deck = with_ties_by_node(with_parts_coupled(deck, made, notes), notes)
     groups = Groups(deck)
@@ -120,7 +122,8 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     rigid, bound = _referenced(deck, groups, moving, plane, reasons)
     notes += [*_idle(deck, groups), *unlisted_notes(deck), *beside_notes(deck)]
     references = dict(zip([*moving, *(coupling.name for coupling in bound)], reference_nodes(deck)))
-    prescribed = _prescribed(deck, groups, parts, plane, references, notes, reasons)
+    modulus = max((solid.material.modulus for solid in solids), default=1.0)
+    prescribed = _prescribed(deck, groups, parts, plane, references, modulus, notes, reasons)
     asked, vibrations = tables(deck, groups, notes), _vibrations(deck, groups, reasons)
     reasons.tell()
     mesh = build(Mesh, groups.raw(), deck.path)
@@ -149,6 +152,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
         plane=plane,
         kinematics="finite" if finite else "small",
         modes=vibrations,
+        removals=tuple(removals(deck, parts)),
         solve=replace(_steps(deck, finite), end=period(deck)),
     )
     model, output = with_tables(model, deck, asked, notes), output_options(model, deck, notes)
@@ -199,7 +203,7 @@ class _Prescribed:
 
 def _prescribed(
     deck: Deck, groups: Groups, parts: dict[str, Piece], plane: str | None, references: dict[str, tuple[int, int]],
-    notes: list[str], reasons: Reasons,
+    modulus: float, notes: list[str], reasons: Reasons,
 ) -> _Prescribed:  # fmt: skip
     """Supports, equations and loads; ``notes`` and ``reasons`` get what there is to say."""
     thick = 1.0
@@ -207,7 +211,7 @@ def _prescribed(
         thick = thickness(deck, plane, notes)
     result = _Prescribed([], [], [], [], [])
     with reasons.gathered():
-        result.springs.extend(springs(deck, groups, plane, thick))
+        result.springs.extend(springs(deck, groups, plane, thick, modulus))
     with reasons.gathered():
         bound = bonds(deck, groups, plane)
         result.supports.extend(supports(bound, groups))

@@ -57,10 +57,11 @@ def _parts(deck: Deck) -> Numbers:
 
 
 def _split(deck: Deck, elements: Numbers, part: Numbers) -> list[tuple[str, tuple[str, ...], Numbers]]:
-    """Connected elements that integrate alike and have the same gravity and centrifugal forces, in the order of their lowest
-    numbers: (integration, types, elements)."""
+    """Connected elements that integrate alike, have the same gravity and centrifugal forces and go together, in the order of
+    their lowest numbers: (integration, types, elements)."""
     parts: dict[tuple[int, str, int], tuple[set[str], list[Numbers]]] = {}
     loaded = [value.numbers for step in deck.steps for value in step.values if value.kind in BODY_LOADS]
+    loaded += [absence.elements for absence in deck.absences]
     for block in deck.blocks:
         each = np.intersect1d(elements, block.ids)
         if not len(each):

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
+
+import numpy as np
 
 from abut.io.deck.assembly import without_parts
 from abut.io.deck.cards import Card, read_cards
@@ -27,7 +30,7 @@ from abut.io.deck.output_cards import requests
 from abut.io.deck.reasons import DeckError, Reasons
 from abut.io.deck.record import Amplitude, Deck, Prescribed
 from abut.io.deck.references import with_references
-from abut.io.deck.removed_elements import removed, without
+from abut.io.deck.removed_elements import absences, gone, without
 from abut.io.deck.repeated import repeated_members, without_repeated
 from abut.io.deck.shell_cards import nodal_thickness, normals
 from abut.io.deck.spring_cards import springs
@@ -91,9 +94,11 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
         requests=requests(sifted.requests),
         modes=modes,
     )
-    gone = removed(groups, mesh, reasons)
+    away = absences(groups, mesh, reasons)
     reasons.tell()
-    return with_references(without(deck, gone))
+    never = gone(away)
+    passing = tuple(absence for absence in away if not np.isin(absence.elements, never).all())
+    return with_references(replace(without(deck, never), absences=passing))
 
 
 def read_mesh_only(path: Path) -> Deck:

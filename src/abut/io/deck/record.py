@@ -52,11 +52,13 @@ class Hardening:
 
 @dataclass(frozen=True)
 class Rubber:
-    """kind: as in a job file, with the constants that decks give it; volume: factors of (J - 1)^2, (J - 1)^4, ..."""
+    """kind: as in a job file, with the constants that decks give it; volume: factors of (J - 1)^2, (J - 1)^4, ...;
+    assumed: the first of these, as the deck has 0 for D1."""
 
     kind: str
     constants: tuple[float, ...]
     volume: tuple[float, ...]
+    assumed: bool = False
 
 
 Rows = tuple[tuple[float, tuple[float, ...]], ...]  # temperatures, growing, and what belongs to them
@@ -254,9 +256,19 @@ class Transform:
 
 
 @dataclass(frozen=True)
+class Absence:
+    """Elements (n,) that are not there for a while. spans: the step (0, 1, ...) from which on they are away, and that from
+    which on they are there again, left out where they stay away."""
+
+    elements: Numbers
+    spans: tuple[tuple[int, ...], ...]
+
+
+@dataclass(frozen=True)
 class Spring:
     """Springs of one type and law. name: the element set; elements (n,) numbers; ends (n, 1 or 2) nodes; directions: of
-    SPRING1 and SPRING2 the one they act in, 1..3; law: a stiffness, or pairs of elongation and force."""
+    SPRING1, SPRING2 and GAPUNI the one they act in, 1..3; law: a stiffness, or pairs of elongation and force, which are per
+    stiffness where ``rigid``: of one that yields next to nothing."""
 
     name: str
     code: str
@@ -265,6 +277,12 @@ class Spring:
     directions: tuple[int, ...]
     law: float | tuple[tuple[float, float], ...]
     place: Place
+    rigid: bool = False
+
+    @property
+    def title(self) -> str:
+        """The card that has the law."""
+        return "*GAP" if self.code == "GAPUNI" else "*SPRING"
 
 
 @dataclass(frozen=True)
@@ -345,7 +363,8 @@ class Deck:
     """A whole deck. nodes (n,) sorted; points (n, 3); sets and surfaces by name as the deck first spells it; fixed: supports
     outside the steps; initial: node -> temperature; quiet, ignored: see ``supported.Sifted``; small_sliding: a
     contact pair asks for it; thicknesses: of shells at nodes; normals: of shells at (element, node); thin: what stands for
-    the nodes of shells once they are expanded; modes: what the last step asks for beside."""
+    the nodes of shells once they are expanded; modes: what the last step asks for beside;
+    absences: of elements that go on the way, or come."""
 
     path: str
     nodes: Numbers
@@ -377,6 +396,7 @@ class Deck:
     thin: Mapping[int, Thin] = field(default_factory=dict)
     requests: tuple[Request, ...] = ()
     modes: Modes | None = None
+    absences: tuple[Absence, ...] = ()
 
     @property
     def references(self) -> frozenset[int]:

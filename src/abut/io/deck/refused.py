@@ -63,7 +63,6 @@ REFUSED: dict[str, str] = {
     "FILM": f"heat films belong to heat transfer, which abut does not solve{_THERMAL}",
     "FLUID CONSTANTS": _FLOW,
     "FLUID SECTION": _FLOW,
-    "GAP": "gap elements are not supported; use *CONTACT PAIR",
     "HYPERFOAM": f"foam elasticity is not supported{_MATERIAL}",
     "MAGNETIC PERMEABILITY": "it belongs to electromagnetics, which abut does not solve; take it out",
     "MASS": "point masses belong to dynamics; take them out, and give their weight by *CLOAD",

@@ -1,16 +1,16 @@
-"""*MODEL CHANGE, TYPE=ELEMENT, REMOVE in the first step: elements that are not there."""
+"""*MODEL CHANGE, TYPE=ELEMENT: elements that are not there, go, or come back."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from abut.io.deck.cards import Card, key
+from abut.io.deck.cards import Card, Line, key
 from abut.io.deck.mesh_cards import MeshCards
 from abut.io.deck.reasons import Reasons
-from abut.io.deck.record import Deck, Faces, Numbers, Prescribed
+from abut.io.deck.record import Absence, Deck, Faces, Numbers, Prescribed
 
 ON_ELEMENTS = ("pressure", "gravity", "centrifugal")
 EMPTY = np.empty(0, np.int64)
@@ -21,27 +21,50 @@ def of_elements(card: Card) -> bool:
     return key(card.get("TYPE", "ELEMENT") or "") != "CONTACTPAIR"
 
 
-def removed(groups: Sequence[Sequence[Card]], mesh: MeshCards, reasons: Reasons) -> Numbers:
-    """Numbers of the elements that the first step takes out; ``groups``: the cards of each step. ``reasons`` gets elements
-    that come or go later."""
-    result: list[Numbers] = [EMPTY]
+def absences(groups: Sequence[Sequence[Card]], mesh: MeshCards, reasons: Reasons) -> tuple[Absence, ...]:
+    """Elements that steps take out and bring back, those together that do so in the same steps; ``groups``: the cards of
+    each step. ``reasons`` gets what is no such thing."""
+    spans: dict[int, list[list[int]]] = {}  # of each element: the step from which on it is away, and that of its return
     for number, group in enumerate(groups):
         for card in group:
-            if card.key != "MODELCHANGE" or not of_elements(card):
-                continue
-            with reasons.gathered():
-                if number or not card.has("REMOVE") or card.has("ADD"):
-                    raise card.error(
-                        "elements that come, or that go after the first step, are not supported; make a deck for each state"
-                    )
-                for line in card.lines:
-                    for i, text in enumerate(line.fields):
-                        members = mesh.element_sets.resolve(line, i, "element") if text else EMPTY
-                        for element in members.tolist():
-                            if element not in mesh.kinds:
-                                raise line.unknown(f"element {element} does not exist")
-                        result.append(members)
-    return np.unique(np.concatenate(result))
+            if card.key == "MODELCHANGE" and of_elements(card):
+                with reasons.gathered():
+                    for element, line in _members(card, mesh):
+                        _note(spans.setdefault(element, []), number, card, line, element)
+    alike: dict[tuple[tuple[int, ...], ...], list[int]] = {}
+    for element, found in spans.items():
+        alike.setdefault(tuple(map(tuple, found)), []).append(element)
+    return tuple(Absence(np.array(sorted(members), np.int64), found) for found, members in alike.items() if found)
+
+
+def _members(card: Card, mesh: MeshCards) -> Iterator[tuple[int, Line]]:
+    if card.has("REMOVE") == card.has("ADD"):
+        raise card.error("expected one of ADD and REMOVE")
+    if key(card.get("ADD") or "STRAINFREE") != "STRAINFREE":
+        raise card.error(f"ADD={card.get('ADD')} is not supported: elements come back without strain; write ADD alone")
+    for line in card.lines:
+        for i, text in enumerate(line.fields):
+            for element in mesh.element_sets.resolve(line, i, "element").tolist() if text else ():
+                if element not in mesh.kinds:
+                    raise line.unknown(f"element {element} does not exist")
+                yield element, line
+
+
+def _note(found: list[list[int]], step: int, card: Card, line: Line, element: int) -> None:
+    away = bool(found) and len(found[-1]) == 1
+    if card.has("REMOVE") and not away:
+        found.append([step])
+    elif card.has("ADD") and away and found[-1][0] < step:
+        found[-1].append(step)
+    elif card.has("ADD") and not away:
+        raise line.error(f"element {element} is there already; take it out of the line")
+    elif card.has("ADD"):
+        raise line.error(f"element {element} is taken out and brought back in one step; give one of them")
+
+
+def gone(found: Sequence[Absence]) -> Numbers:
+    """Elements that the first step takes out for good."""
+    return np.unique(np.concatenate([EMPTY, *(absence.elements for absence in found if absence.spans == ((0,),))]))
 
 
 def without(deck: Deck, gone: Numbers) -> Deck:

@@ -9,6 +9,7 @@ KINDS = {  # the parameter, as names are compared, and the kind of a job file
     "NEOHOOKE": "neo-hooke", "MOONEY-RIVLIN": "mooney-rivlin", "YEOH": "yeoh", "OGDEN": "ogden",
     "ARRUDA-BOYCE": "arruda-boyce", "POLYNOMIAL": "polynomial", "REDUCEDPOLYNOMIAL": "reduced polynomial",
 }  # fmt: skip
+STIFF_IN_VOLUME = 0.1  # D1 times the shear modulus where D1 is 0, as in CalculiX: Poisson's ratio .475
 
 
 def rubber(card: Card) -> Rubber:
@@ -32,10 +33,13 @@ def rubber(card: Card) -> Rubber:
     count = {"yeoh": 3, "ogden": terms, "reduced polynomial": terms}.get(kind, 1)
     numbers = _numbers(card, [*names, *(f"D{i + 1}" for i in range(count))])
     constants, volume = numbers[: len(names)], numbers[len(names) :]
-    _check(card, kind, constants, volume)
+    shear = _check(card, kind, constants, volume)
+    assumed = volume[0] == 0.0
+    if assumed:
+        volume = (STIFF_IN_VOLUME / shear, *volume[1:])
     if kind == "reduced polynomial":
         kind, constants = "yeoh", (*constants, 0.0, 0.0)[:3]
-    return Rubber(kind, tuple(constants), tuple(1.0 / d if d > 0.0 else 0.0 for d in volume))
+    return Rubber(kind, tuple(constants), tuple(1.0 / d if d > 0.0 else 0.0 for d in volume), assumed)
 
 
 def _terms(card: Card) -> int:
@@ -63,13 +67,15 @@ def _numbers(card: Card, names: list[str]) -> tuple[float, ...]:
     )
 
 
-def _check(card: Card, kind: str, constants: tuple[float, ...], volume: tuple[float, ...]) -> None:
+def _check(card: Card, kind: str, constants: tuple[float, ...], volume: tuple[float, ...]) -> float:
+    """The shear modulus at rest. Raises InputError for what has none."""
     line = card.lines[0]
     name = "mu" if kind == "arruda-boyce" else "C10"
     if kind in ("neo-hooke", "arruda-boyce") and not constants[0] > 0.0:
         raise line.error(f"{name}: expected a number > 0, got {constants[0]:g}")
-    if not volume[0] > 0.0:
-        raise line.error(
-            f"D1: expected a number > 0, got {volume[0]:g}: abut has no incompressible material; D1 = 2 / K, and "
-            f"{0.1 / max(abs(constants[0]), 1e-300):.3g} gives a bulk modulus K of about ten times the shear modulus"
-        )
+    shear = {
+        "ogden": sum(constants[::2]), "arruda-boyce": constants[0], "mooney-rivlin": 2.0 * sum(constants),
+    }.get(kind, 2.0 * constants[0])  # fmt: skip
+    if volume[0] < 0.0 or (volume[0] == 0.0 and not shear > 0.0):
+        raise line.error(f"D1: expected a number > 0, got {volume[0]:g}: D1 = 2 / K, with the bulk modulus K")
+    return shear

@@ -1,4 +1,4 @@
-"""Springs of a deck: elements SPRING1, SPRING2 and SPRINGA with their *SPRING."""
+"""Springs of a deck: elements SPRING1, SPRING2 and SPRINGA with their *SPRING, GAPUNI with *GAP."""
 
 from __future__ import annotations
 
@@ -7,10 +7,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from abut.io.deck.cards import Card, as_integer, of
+from abut.io.deck.gap_cards import gap_law
 from abut.io.deck.reasons import DeckError, Place, Reasons
 from abut.io.deck.record import Spring
 
-NODES = {"SPRING1": 1, "SPRING2": 2, "SPRINGA": 2}
+NODES = {"SPRING1": 1, "SPRING2": 2, "SPRINGA": 2, "GAPUNI": 2}
+CARD = dict.fromkeys(NODES, "SPRING") | {"GAPUNI": "GAP"}  # that has the law
 ELEMENTS = "SPRINGELEMENTS"  # key of *ELEMENT cards with them
 Found = dict[int, tuple[str, tuple[int, ...], Place]]  # by number: type, nodes, where
 
@@ -29,7 +31,7 @@ def springs(cards: Sequence[Card], nodes: frozenset[int], reasons: Reasons) -> t
             with reasons.gathered():
                 sets.setdefault(card.need("ELSET").upper(), []).extend(_members(card, found, sets))
     result: list[Spring] = []
-    for card in of(cards, "SPRING"):
+    for card in (*of(cards, "SPRING"), *of(cards, "GAP")):
         with reasons.gathered():
             result += _with_law(card, sets.get(card.need("ELSET").upper(), []), found)
     left = found.keys() - {number for spring in result for number in spring.elements.tolist()}
@@ -37,7 +39,7 @@ def springs(cards: Sequence[Card], nodes: frozenset[int], reasons: Reasons) -> t
         if not reasons.found:
             code, _, place = found[number]
             more = f" and {len(left) - 1} more" if len(left) > 1 else ""
-            reasons.add(DeckError(place, f"*ELEMENT: {code} {number}{more} without *SPRING; give its set one"))
+            reasons.add(DeckError(place, f"*ELEMENT: {code} {number}{more} without *{CARD[code]}; give its set one"))
     return tuple(result)
 
 
@@ -73,14 +75,21 @@ def _members(card: Card, found: Found, sets: Mapping[str, list[int]]) -> list[in
 
 def _with_law(card: Card, members: Sequence[int], found: Found) -> list[Spring]:
     name = card.need("ELSET")
+    wanted = [code for code, own in CARD.items() if own == card.key]
     if not members:
-        raise card.error(f"ELSET={name}: no spring elements are in it; give SPRING1, SPRING2 or SPRINGA")
+        raise card.error(f"ELSET={name}: no spring elements are in it; give {' or '.join(wanted)}")
     by_code: dict[str, list[int]] = {}
     for number in dict.fromkeys(members):
         by_code.setdefault(found[number][0], []).append(number)
     if len(by_code) > 1:
         raise card.error(f"ELSET={name}: it has elements {' and '.join(by_code)}; give each type a set of its own")
     ((code, numbers),) = by_code.items()
+    if code not in wanted:
+        raise card.error(f"ELSET={name}: it has elements {code}; give their set *{CARD[code]}")
+    ends = np.array([found[number][1] for number in numbers], np.int64)
+    if code == "GAPUNI":
+        direction, table, rigid = gap_law(card)
+        return [Spring(name, code, np.array(numbers, np.int64), ends, (direction,), table, card.place, rigid)]
     rows = [line for line in card.lines if any(line.fields)]
     directions: tuple[int, ...] = ()
     if code != "SPRINGA":
@@ -107,5 +116,4 @@ def _with_law(card: Card, members: Sequence[int], found: Found) -> list[Spring]:
         if len(rows) > 1:
             raise rows[1].error("stiffnesses for several temperatures are not read; give one")
         law = rows[0].number(0, "stiffness")
-    ends = np.array([found[number][1] for number in numbers], np.int64)
     return [Spring(name, code, np.array(numbers, np.int64), ends, directions[:1], law, card.place)]

@@ -65,6 +65,7 @@ READ: dict[str, tuple[str, ...]] = {
     "CLEARANCE": ("MASTER", "SLAVE", "VALUE", "CPSET"),
     "TIE": ("NAME", "POSITION TOLERANCE", "ADJUST", "TYPE", "CYCLIC SYMMETRY", "NO THICKNESS", "NO ROTATION"),
     "SPRING": ("ELSET", "NONLINEAR"),
+    "GAP": ("ELSET",),
     "CYCLIC SYMMETRY MODEL": ("N", "TIE", "ELSET", "NGRAPH"),
     "PRE-TENSION SECTION": ("SURFACE", "NODE"),
     "EQUATION": (),
@@ -120,6 +121,7 @@ LEFT_OUT = {
     "CHANGEFRICTION",
     "CHANGESURFACEBEHAVIOR",
     "SPRING",
+    "GAP",
     *COUPLINGS,
 }  # cards that are read, and may be left out all the same
 _READ = {key(name): {key(p) for p in parameters} for name, parameters in READ.items()}
@@ -189,7 +191,7 @@ def sift(cards: Iterable[Card], reasons: Reasons, ignore: Collection[str] = ()) 
                 kept.append(Card("DCOUP", card.title, card.parameters, card.lines, card.place))
                 continue
             if card.key == "ELEMENT" and code in spring_cards.NODES:
-                if "SPRING" not in asked:
+                if spring_cards.CARD[code] not in asked:
                     kept.append(replace(card, key=spring_cards.ELEMENTS))
                 continue
             if card.key == "ELEMENT" and code and code not in ELEMENTS:

@@ -1,0 +1,29 @@
+"""*MODEL CHANGE, TYPE=ELEMENT: bodies that go between steps, or come."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from abut.io.deck.groups import Piece
+from abut.io.deck.record import Deck
+from abut.io.deck.time_histories import ends
+from abut.model import Removal
+
+
+def removals(deck: Deck, parts: Mapping[str, Piece]) -> Iterator[Removal]:
+    """Of the bodies, by name: at once as a step begins, and back without strain, as in CalculiX."""
+    starts = (0.0, *ends(deck))
+    for absence in deck.absences:
+        for name, piece in parts.items():
+            if np.isin(piece.elements, absence.elements).all():
+                for away, *back in absence.spans:
+                    yield Removal(name, starts[away], since=starts[back[0]] if back else None)
+
+
+def passing_notes(deck: Deck) -> list[str]:
+    """That elements come back without strain."""
+    back = [absence for absence in deck.absences if any(len(span) > 1 for span in absence.spans)]
+    count = sum(len(absence.elements) for absence in back)
+    return [f"*MODEL CHANGE: {count} elements come back without strain, where their nodes are then"] if back else []
