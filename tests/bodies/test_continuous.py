@@ -29,6 +29,7 @@ from abut import (
 from abut.bodies.assemble import internal_force, is_symmetric, respond, stiffness
 from abut.bodies.solids import Solids, TemperatureChange
 from abut.bodies.stress import point_stress
+from abut.materials.kernel import Since
 from abut.mesh.make import box, join
 from abut.mesh.mesh import Mesh
 from abut.verify.cell_pressures import cell_inf_sup, continuous_inf_sup
@@ -150,6 +151,42 @@ def test_inf_sup() -> None:
     np.testing.assert_allclose(found, [0.565, 0.562, 0.5615], atol=0.02)
     assert found[-1] > 0.98 * found[0]
     assert alone[-1] < 0.8 * alone[0]
+
+
+@pytest.mark.parametrize("guessed", [False, True])
+def test_foreseen_pressures(guessed: bool) -> None:
+    """The tangent takes the pressures that the last iteration foresaw, theory (D24): it differs from the derivative of the
+    forces by V_a k (growth - foreseen growth) times the second derivative of each growth, which is a cubic of displacements:
+    differences of its first derivatives on both sides give it exactly but for a third order, which is small."""
+    bulk = 50.0
+    body = solids(distorted(1), NeoHooke(shear=0.7, bulk=bulk, volumetric="isochoric"), "finite")
+    of, rng = body.pressures, np.random.default_rng(4)
+    assert of is not None
+    before, after, a, b = (0.03 * rng.normal(size=body.points.shape) for _ in range(4))
+    change = respond(body, after, since=Since(before, guessed)).tangent - respond(body, after).tangent
+    start, now = of.at(before), of.at(after)
+    unforeseen = now.growth - start.growth - (0.0 if guessed else start.rows @ (after - before).ravel())
+    step = 1e-4
+    curved = (of.at(after + step * b).rows - of.at(after - step * b).rows) @ a.ravel() / (2 * step)
+    constant = bulk - 2.0 / 3.0 * 0.7  # of the law that acts on volumes; what is left has 2/3 of the shear modulus
+    assert a.ravel() @ change @ b.ravel() == pytest.approx(-constant * (of.volume * unforeseen) @ curved, rel=1e-6)
+
+
+def test_iterations_do_not_grow_with_the_bulk_modulus() -> None:
+    """Rubber between rough plates, squeezed by a fifth at once."""
+    assert squeezed(1e7) <= squeezed(1e3) + 1
+
+
+def squeezed(bulk: float) -> int:
+    """Iterations."""
+    mesh = join({"rubber": box((0, 1), (0, 1), (0, 1), (2, 2, 2), "tet10")})
+    law = NeoHooke(shear=1.0, bulk=bulk, volumetric="isochoric")
+    held = [
+        Support("rubber.bottom", x=0.0, y=0.0, z=0.0), Support("rubber.top", x=0.0, y=0.0, z=-0.2),
+    ]  # fmt: skip
+    options = SolveOptions(steps=1)
+    solution = solve(Model(mesh, [Solid("rubber", law, integration="mixed")], held, kinematics="finite", solve=options))
+    return sum(len(step.iterations) for step in solution.steps)
 
 
 def cook(n: int, law: object, how: str = "mixed", linear: str = "auto") -> Model:

@@ -13,6 +13,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import abut
+from abut.bodies.factor_memory import MEMORY
 from abut.cells import CELLS
 from abut.cli import main
 from abut.diagnosis import Finding, Report, check
@@ -20,7 +21,7 @@ from abut.diagnosis.cost import foresee
 from abut.diagnosis.quality import quality
 from abut.errors import InputError
 from abut.job import load_job
-from abut.linear.cost_model import LARGE, MEMORY, Effort, effort, of_stiffness, seconds
+from abut.linear.cost_model import LARGE, Effort, effort, of_stiffness, seconds
 from abut.mesh.make import box, join, rectangle
 from abut.mesh.mesh import CellBlock, Mesh
 from abut.mesh.shapes import CORNERS

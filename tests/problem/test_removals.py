@@ -166,3 +166,33 @@ def test_a_run_that_is_taken_up_again_ends_alike():
 def test_what_does_not_fit_is_told(removal, word):
     with pytest.raises(abut.InputError, match=word):
         removal()
+
+
+@pytest.mark.long
+def test_mixed_tetrahedra_that_go_and_come_back() -> None:
+    """The posts in space, of material that keeps its volume and may grow sideways: the same springs."""
+    parts = {
+        name: make.box(x, (0.0, 1.0), (0.0, LENGTH), (2, 2, 3), "tet10")
+        for name, x in {"left": (0.0, 1.0), "right": (2.0, 3.0)}.items()
+    }
+    parts["beam"] = make.box((-0.25, 3.25), (-0.25, 1.25), (LENGTH, LENGTH + 0.5), (3, 2, 1))
+    solution = abut.solve(
+        abut.Model(
+            make.join(parts),
+            [abut.Solid(name, abut.LinearElastic(YOUNG, 0.5)) for name in ("left", "right")],
+            [
+                abut.Support(f"{name}.{side}", **{axis: 0})
+                for name in ("left", "right")
+                for side, axis in {"bottom": "z", "left": "x", "front": "y"}.items()
+            ],
+            [abut.Force("beam", (0.0, 0.0, -FORCE), amplitude=STEADY)],
+            [abut.Contact(f"{name}.top", "beam.bottom", name=name) for name in ("left", "right")],
+            rigid=[abut.Rigid("beam", x=0, y=0, rx=0, ry=0, rz=0)],
+            removals=[abut.Removal("right", until=0.25, since=0.75)],
+            solve=abut.SolveOptions(times=TIMES),
+        )
+    )
+    assert solution.converged
+    both, alone = FORCE / 2.0 / STIFFNESS, FORCE / STIFFNESS
+    way = [-step.rigid["beam"].displacement[2] for step in solution.steps]
+    assert way == pytest.approx([both, alone, alone, (alone + both) / 2.0], rel=1e-6)

@@ -64,7 +64,9 @@ def linear_solver(kind: str, problem: ContactProblem, team: Team | None) -> Line
 
 def setting_up(solver: LinearSolver, problem: ContactProblem) -> tuple[str, float]:
     """What setting a solver up is, and about how many seconds it takes."""
-    kind = "direct" if solver.count is None else "amg"
+    kind, model = "direct" if solver.count is None else "amg", problem.model
     what = "factorising" if kind == "direct" else "setting up multigrid for"
     size = f"{problem.n_free:,}".replace(",", " ")
-    return f"{what} {size} displacements", preparing(of_stiffness(problem.model.mesh, problem.n_free), kind)
+    return f"{what} {size} displacements", preparing(
+        of_stiffness(model.mesh, problem.n_free, model.integrations.wide), kind
+    )

@@ -84,7 +84,7 @@ def respond(
         after.setdefault(group.body, []).extend(new)
     history = {body: np.concatenate(parts) for body, parts in after.items() if body}
     total, slope = force.ravel(), None if values is None else _matrix_of(solids, values)
-    more = pressure_response(solids, moved, temperature, tangent)
+    more = pressure_response(solids, moved, temperature, tangent, since)
     if more is not None:
         total, energy = total + more.force, energy + more.energy
         slope = None if slope is None or more.tangent is None else (slope + more.tangent).tocsr()

@@ -10,6 +10,7 @@ import numpy as np
 from abut.bodies.corner_pressures import KIND, CornerPressures, Turned, Volumes, linear_functions
 from abut.bodies.inverted import Inverted
 from abut.bodies.solids import Array, Solids, TemperatureChange
+from abut.materials.kernel import Since
 from abut.types import Sparse
 
 
@@ -32,9 +33,10 @@ def pressure_stiffness(solids: Solids) -> Sparse | None:
 
 
 def pressure_response(
-    solids: Solids, displacement: Array, temperature: TemperatureChange, tangent: bool
+    solids: Solids, displacement: Array, temperature: TemperatureChange, tangent: bool, since: Since | None = None
 ) -> PressureResponse | None:
-    """At displacements (n_points, dim); None without such pressures. Raises Inverted, under finite strains."""
+    """At displacements (n_points, dim); None without such pressures. since: as in ``abut.bodies.assemble.respond``. Raises
+    Inverted, under finite strains."""
     of, finite = solids.pressures, solids.kinematics == "finite"
     if of is None:
         return None
@@ -45,7 +47,8 @@ def pressure_response(
     if tangent:
         slope = of.stiffness(now.rows, bend)
         if finite:
-            slope = slope + of.bending(displacement, pressure, solids.pattern)
+            foreseen = pressure - bend * _unforeseen(of, displacement, growth, since)
+            slope = slope + of.bending(displacement, foreseen, solids.pattern)
     of_cells = np.zeros(solids.mesh.n_cells)
     if not solids.constant:
         of_cells[of.cells] = (of.shares * energy[of.corner]).sum(axis=1)
@@ -84,6 +87,16 @@ def _volumes(solids: Solids, of: CornerPressures, displacement: Array) -> tuple[
         cell = int(of.cells[now.row])
         raise Inverted(cell, list(solids.materials)[solids.body_of[cell]], now.determinant)
     return now, now.growth
+
+
+def _unforeseen(of: CornerPressures, displacement: Array, growth: Array, since: Since | None) -> Array:
+    """Growth of the volumes beyond what Newton's method foresaw, theory (D24); none where it came from nowhere, or from
+    where volumes have turned inside out."""
+    before = None if since is None else of.at(since.displacement)
+    if since is None or not isinstance(before, Volumes):
+        return np.zeros(of.count)
+    more = growth - before.growth
+    return more if since.guessed else more - before.rows @ (displacement - since.displacement).ravel()
 
 
 def _swelling(solids: Solids, of: CornerPressures, temperature: TemperatureChange) -> Array | None:

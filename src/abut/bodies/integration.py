@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from math import inf
 
 from abut.cells import CELLS
 from abut.errors import InputError
@@ -13,13 +14,16 @@ from abut.mesh.quadrature import BBAR, CONTINUOUS, PRESSURES, REDUCED
 INTEGRATIONS = ("auto", "full", "reduced", "b-bar", "mixed")
 LOCKING = 0.45 + 1e-9  # Poisson's ratio beyond which "auto" takes b-bar; constants' rounding aside
 SECOND = 0.4996  # the same for cells of second order, which are a few percent too stiff up to there
-TETRAHEDRA = 0.49 - 1e-9  # the same for tetrahedra of second order
+TETRAHEDRA = 240.0  # bulk over shear modulus from which tetrahedra of second order are too stiff: Poisson's ratio 0.498
 
 
-def resolved(how: str, kinds: Iterable[str], plane: str | None, material: Material, finite: bool = False) -> str:
+def resolved(
+    how: str, kinds: Iterable[str], plane: str | None, material: Material, finite: bool = False, afforded: bool = True
+) -> str:
     """What "auto" means for a body of some cell types, finite: under finite strains: "full", but where its
     material hardly changes its volume "b-bar" for cells of first order, "mixed" for those of second order; where it flows
-    "reduced" if that is for all of them. Plane stress does not lock."""
+    "reduced" if that is for all of them. Plane stress does not lock. afforded: whether memory allows for pressures that
+    are continuous (``abut.bodies.factor_memory``); a Poisson's ratio of 0.5 has them in any case."""
     if how != "auto":
         return how
     rest, flows, kinds = linear(material), volume_preserving(material), list(kinds)
@@ -30,10 +34,16 @@ def resolved(how: str, kinds: Iterable[str], plane: str | None, material: Materi
         return "b-bar"
     if flows and poisson < SECOND and all(kind in REDUCED and _locks(kind) for kind in kinds):
         return "reduced"
-    if poisson > TETRAHEDRA and all(kind in CONTINUOUS for kind in kinds):
-        return "full" if volume_split(material, finite) is None else "mixed"
+    if bulk_over_shear(poisson) > TETRAHEDRA and all(kind in CONTINUOUS for kind in kinds):
+        able = volume_split(material, finite) is not None
+        return "mixed" if able and (afforded or poisson == 0.5) else "full"
     locked = poisson > SECOND or (flows and all(_locks(kind) for kind in kinds))
     return "mixed" if locked and all(kind in PRESSURES for kind in kinds) else "full"
+
+
+def bulk_over_shear(poisson: float) -> float:
+    """Of moduli, infinite at a Poisson's ratio of 0.5."""
+    return inf if poisson == 0.5 else 2.0 * (1.0 + poisson) / (3.0 * (1.0 - 2.0 * poisson))
 
 
 def _locks(kind: str) -> bool:

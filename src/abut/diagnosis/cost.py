@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
 
+from abut.bodies.factor_memory import MEMORY, MEMORY_LAYER, with_wide
 from abut.cells import CELLS
 from abut.diagnosis.finding import Finding
 from abut.linear.choice import chosen
@@ -13,10 +14,9 @@ from abut.linear.cost_model import (
     LARGE,
     LARGE_FINITE,
     LARGE_ON_MANY,
-    MEMORY,
-    MEMORY_LAYER,
     effort,
     seconds,
+    share_of,
     typical_steps,
 )
 from abut.linear.direct import available_memory
@@ -53,7 +53,8 @@ def foresee(model: Model, constraints: Constraints, pairs: Sequence[Pair]) -> Fo
     memory = MEMORY[model.dim, "direct" if model.dim == 2 else solver, degree]
     if thin and solver == "direct":
         memory = MEMORY_LAYER
-    return Foreseen(solver, seconds(effort(model, n, pairs), solver), memory.megabytes(n))
+    share = share_of(model.mesh, model.integrations.wide) if solver == "direct" else 0.0
+    return Foreseen(solver, seconds(effort(model, n, pairs), solver), with_wide(memory, n, share))
 
 
 def cost(model: Model, constraints: Constraints, pairs: Sequence[Pair]) -> list[Finding]:

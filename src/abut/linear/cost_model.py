@@ -8,7 +8,7 @@ the mesh and the pairs, but for those of linear solutions and Krylov iterations:
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,6 +42,8 @@ RESULT, RESULT_PAIR, RESULT_MULTIPLIER = 8e-6, 3.5e-2, 4e-5  # seconds a step: b
 # Where triangles and tetrahedra of first order are solved once more: seconds a free displacement for the forces and for a
 # substitution with the factors, share of the iterations of a step that multigrid takes
 AGAIN, SUBSTITUTION, AGAIN_KRYLOV = 4e-6, 2e-6, 0.25
+# Entries and operations on fronts where pressures are continuous, over those of cells alone
+WIDE_ROWS, WIDE_FRONTS = 7.0, 24.0
 ROW, FRONT = 5e-6, 1.5e-9  # seconds a row of the stiffness, and an operation on a front, to factorise
 ELIMINATIONS = {1: 1, 2: 2}  # of a step, by degree: on quadratic facets functions change where contact is closed
 DENSE, SOLUTION = 1.5e-10, 8e-3  # seconds a cube of the number of multipliers, and a solution, whatever their size
@@ -62,29 +64,6 @@ FOLLOWED = 6e-5  # seconds a multiplier and iteration: contact at current positi
 LARGE = {1: 30_000, 2: 40_000}  # free displacements in 3D, by degree of the cells, from where on multigrid wins
 LARGE_FINITE = {1: 5_000, 2: 10_000}  # the same with kinematics "finite": unsymmetric factors in every iteration
 LARGE_ON_MANY = {1: 5_000, 2: 5_000}  # the same on several processes: MUMPS factorises at every iteration
-
-
-@dataclass(frozen=True)
-class Memory:
-    """megabytes = base + factor n^power, for n free displacements."""
-
-    factor: float
-    power: float
-    base: float = 100.0
-
-    def megabytes(self, n: int) -> float:
-        return self.base + self.factor * float(n) ** self.power
-
-
-MEMORY = {  # by dimension, solver and degree of the cells: fitted to docs/performance.md (3D) and docs/check.md
-    (2, "direct", 1): Memory(2.3e-3, 1.0),
-    (2, "direct", 2): Memory(3.1e-3, 1.0),
-    (3, "direct", 1): Memory(2.7e-4, 4 / 3),
-    (3, "direct", 2): Memory(4.5e-4, 4 / 3),
-    (3, "amg", 1): Memory(4.4e-3, 1.0, 60.0),
-    (3, "amg", 2): Memory(1.0e-2, 1.0, 60.0),
-}
-MEMORY_LAYER = Memory(1.0e-2, 1.0)  # solver "direct", quadratic cells in one layer: 837 MB for 77409, 3127 for 306009
 
 
 @dataclass(frozen=True)
@@ -116,19 +95,26 @@ class Effort:
     again: int = 0
 
 
-def of_stiffness(mesh: Mesh, displacements: int) -> Stiffness:
-    """Count what the stiffness on ``displacements`` free ones asks for."""
+def of_stiffness(mesh: Mesh, displacements: int, wide: Collection[str] = ()) -> Stiffness:
+    """Count what the stiffness on ``displacements`` free ones asks for; wide: bodies with pressures that are continuous."""
     cells = _cells(mesh)
     share = np.array([count * CELLS[kind].nodes for kind, count in cells.items()], dtype=float)
     row = float(share @ [COUPLED[kind] for kind in cells] / share.sum())
-    return Stiffness(displacements, displacements * row, sum(_fronts(mesh, body) for body in mesh.bodies))
+    entries = displacements * row * (1.0 + (WIDE_ROWS - 1.0) * share_of(mesh, wide))
+    fronts = sum(_fronts(mesh, body) * (WIDE_FRONTS if body in wide else 1.0) for body in mesh.bodies)
+    return Stiffness(displacements, entries, fronts)
+
+
+def share_of(mesh: Mesh, bodies: Collection[str]) -> float:
+    """Of all nodes, those of some bodies."""
+    return sum(len(mesh.nodes_of(body)) for body in bodies) / max(len(mesh.points), 1)
 
 
 def effort(model: Model, displacements: int, pairs: Sequence[Pair]) -> Effort:
     """Count what a model asks for."""
     changing = not model.finite and _changes(model)
     return Effort(
-        stiffness=of_stiffness(model.mesh, displacements),
+        stiffness=of_stiffness(model.mesh, displacements, model.integrations.wide),
         cells=_cells(model.mesh),
         multipliers=sum(map(len, pairs)),
         pairs=len(pairs),

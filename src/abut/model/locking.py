@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from abut.bodies.integration import TETRAHEDRA, bulk_over_shear
 from abut.cells import CELLS
 from abut.materials.material import linear
 from abut.mesh.quadrature import BBAR, CONTINUOUS, PRESSURES, REDUCED
@@ -12,7 +13,6 @@ from abut.model.model import Model
 STIFF = 24.0  # bulk over shear modulus (Poisson's ratio 0.48) from which first order is some 10 % too stiff
 LOCKED = 100.0  # the same (0.495): by 20 to 30 %
 SECOND = 50.0  # cells of second order bear this many times as much, and are a few percent too stiff at most
-TETRAHEDRA = 10.0  # the same of tetrahedra
 
 
 @dataclass(frozen=True)
@@ -39,13 +39,13 @@ def locking(model: Model) -> list[Locking]:
         if model.integration(solid) != "full" or material is None:
             continue
         nu = material.poisson
-        ratio = 2.0 * (1.0 + nu) / (3.0 * (1.0 - 2.0 * nu))
+        ratio = bulk_over_shear(nu)
         for kind in {kind for kind, _, _ in model.mesh.cells_of(solid.body)}:
             cell = CELLS[kind]
             simplex = cell.corners == cell.dim + 1
             if simplex and cell.degree == 2 and cell.dim == 2:  # whose linear stresses leave volume enough freedom
                 continue
-            bears = TETRAHEDRA if kind in CONTINUOUS else SECOND
+            bears = TETRAHEDRA / STIFF if kind in CONTINUOUS else SECOND
             stiffness = min(ratio / bears, LOCKED) if cell.degree == 2 else ratio
             if stiffness > STIFF:
                 found.append(Locking(solid.body, kind, nu, stiffness, _cure(solid.body, kind)))

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut import checks
-from abut.bodies.integration import check_integration, check_resolved, resolved
 from abut.bodies.solids import Solids
 from abut.contact.bulge import with_bulge
 from abut.contact.contactor_choice import Side
@@ -40,6 +39,7 @@ from abut.model.consistency import check_equations, check_filled, check_loads, c
 from abut.model.contact import GEOMETRIES, Contact
 from abut.model.coupling import Coupling, check_couplings, moving_points
 from abut.model.hold import Hold, check_holds
+from abut.model.integrations import Integrations
 from abut.model.kinematics import check_finite, check_kinematics
 from abut.model.modes import Buckling, Frequencies
 from abut.model.penetration import Penetration, check_penetrations
@@ -196,12 +196,16 @@ class Model:
     @cached_property
     def deformable(self) -> Solids:
         """The solids as their kernels see them."""
-        integration = {solid.body: self.integration(solid) for solid in self.solids}
-        return Solids(self.mesh, self.materials, self.plane, integration, "small" if self.small_strains else "finite")
+        return Solids(self.mesh, self.materials, self.plane, self.integrations.by_body, self.integrations.kinematics)
 
     def integration(self, solid: Solid) -> str:
         """Of one of the solids, "auto" resolved."""
-        return resolved(solid.integration, self._kinds(solid.body), self.plane, solid.material, not self.small_strains)
+        return self.integrations.of(solid)
+
+    @cached_property
+    def integrations(self) -> Integrations:
+        """Of all."""
+        return Integrations(self.mesh, self.solids, self.plane, not self.small_strains)
 
     @property
     def finite(self) -> bool:
@@ -354,10 +358,8 @@ class Model:
             if solid.body in seen:
                 raise InputError(f"solids[{i}].body: body '{solid.body}' has two materials; keep one of them")
             seen.add(solid.body)
-            kinds, how = self._kinds(solid.body), f"solids[{i}].integration"
-            check_integration(solid.integration, kinds, self.plane, how)
             check_model(solid.material, self.dim, self.plane, f"solids[{i}].material")
-            check_resolved(self.integration(solid), kinds, solid.material, self.plane, not self.small_strains, how)
+            self.integrations.check(solid, f"solids[{i}].integration")
         for i, rigid in enumerate(self.rigid):
             if rigid.body in seen:
                 raise InputError(
@@ -368,9 +370,6 @@ class Model:
             raise InputError(f"solids: no material for body {', '.join(map(repr, missing))}; add a solid for it")
         if not self.solids:
             raise InputError("solids: every body is rigid; at least one must deform")
-
-    def _kinds(self, body: str) -> list[str]:
-        return sorted({kind for kind, _, _ in self.mesh.cells_of(body)})
 
     def _check_contacts(self) -> None:
         mesh, rigid = self.mesh, {body.body for body in self.rigid}

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.bodies.factor_memory import AFFORDED
 from abut.errors import InputError
 from abut.model import Model
 from abut.model.conditions import weights
@@ -109,12 +110,20 @@ def assemble(
         kinematics=[kinematics(pair, constraints, backend) for pair in every] if model.finite else None,
         own=frozenset(term.name for term in own),
     )
-    for solid in model.solids:
-        if solid.integration == "auto" and (how := model.integration(solid)) != "full":
-            note(f"body '{solid.body}': integration = \"{how}\", as cells that keep their volume would lock otherwise")
+    _describe_cells(model, note)
     note(f"{reduced.shape[0]} free displacements, {sum(map(len, every))} multipliers")
     clock.mark("set-up")
     return Assembled(problem, bodies, loaded)
+
+
+def _describe_cells(model: Model, note: Callable[[str], None]) -> None:
+    """How they are integrated, where that was left to abut."""
+    for solid in model.solids:
+        if solid.integration == "auto" and (how := model.integration(solid)) != "full":
+            note(f"body '{solid.body}': integration = \"{how}\", as cells that keep their volume would lock otherwise")
+    for body in model.integrations.too_wide:
+        much = f"{AFFORDED / 1000.0:.0f} GB"
+        note(f'body \'{body}\': integration = "full", which is too stiff here; "mixed" would need more than {much}')
 
 
 def _bodies(model: Model, loaded: Loads, backend: Backend) -> Bodies:

@@ -345,7 +345,7 @@ class Solution:
         bodies = ", ".join(f"'{one.body}' of {one.kind}, {one.poisson:g}" for one in found)
         return (
             Check("", "locking", found[0].stiffness, LOCKED,
-                  f"bulk over shear modulus of fully integrated cells (a fiftieth of it of second order): {bodies}",
+                  f"bulk over shear modulus of fully integrated cells (second order: a fiftieth, tet10: a tenth): {bodies}",
                   notice=STIFF),
         )  # fmt: skip
 
