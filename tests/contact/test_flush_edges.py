@@ -66,8 +66,8 @@ def test_no_force_where_leaves_part(cell: str, count: int, clamp: str) -> None:
 
 
 def test_contact_at_an_edge_alone() -> None:
-    """Two blocks, flush, of which one turns and comes in by .006 at one end, which opens by .025 within a facet: in the mean it
-    is open there, but the ends would lie in each other, so that dual functions stay."""
+    """Two blocks, flush, of which one turns and comes in by .006 at one end, which opens by .025 within a facet: in the
+    mean it is open there, but the ends would lie in each other, so that dual functions stay."""
     mesh = join(
         {name: rectangle((0.0, 4.0), y, (8, 4), "quad8") for name, y in (("low", (-2.0, 0.0)), ("high", (0.0, 2.0)))}
     )

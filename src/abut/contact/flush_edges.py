@@ -40,14 +40,14 @@ class FlushEdges:
         if not len(self.facet):
             return np.zeros(len(closed), dtype=bool)
         uses = abs(space.plain)
-        acts = np.asarray(uses @ closed.astype(float) > 0.0).reshape(self.n_facets, MAX_FACET_NODES)
-        own = acts[self.facet]
+        acts = np.reshape(np.asarray(uses @ closed.astype(float)) > 0.0, (self.n_facets, MAX_FACET_NODES))
+        own: NDArray[np.bool_] = acts[self.facet]
         only = own & self.at_edge & ~(own & ~self.at_edge).any(axis=1)[:, None]
         good = acts & (acts.sum(axis=1) == 1)[:, None]
         np.logical_or.at(good, self.facet, only)
         there = np.zeros_like(acts)
         np.logical_or.at(there, self.facet, self.at_edge)
-        at_edge, others = (uses.T @ each.ravel().astype(float) > 0.0 for each in (there, acts & ~good))
+        at_edge, others = (np.asarray(uses.T @ each.ravel().astype(float) > 0.0) for each in (there, acts & ~good))
         return np.asarray(closed & at_edge & ~others)
 
     def on(self, space: PressureSpace, some: NDArray[np.bool_], facets: NDArray[np.bool_]) -> NDArray[np.bool_]:
