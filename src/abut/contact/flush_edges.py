@@ -40,7 +40,8 @@ class FlushEdges:
         if not len(self.facet):
             return np.zeros(len(closed), dtype=bool)
         uses = abs(space.plain)
-        acts = np.reshape(np.asarray(uses @ closed.astype(float)) > 0.0, (self.n_facets, MAX_FACET_NODES))
+        sums: NDArray[np.float64] = np.asarray(uses @ closed.astype(float))
+        acts: NDArray[np.bool_] = np.asarray(sums.reshape(self.n_facets, MAX_FACET_NODES) > 0.0)
         own: NDArray[np.bool_] = acts[self.facet]
         only = own & self.at_edge & ~(own & ~self.at_edge).any(axis=1)[:, None]
         good = acts & (acts.sum(axis=1) == 1)[:, None]
