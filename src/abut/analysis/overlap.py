@@ -12,6 +12,7 @@ from abut.analysis.oscillation import CLOSED
 from abut.cells import MAX_FACET_NODES
 from abut.contact.geometry import facet_sizes, full_moments
 from abut.problem.pair import Pair
+from abut.problem.sample_gaps import gaps_at
 
 SOLVED = 1e-8  # of the largest change of a gap: overlaps below are left by the solver
 
@@ -27,15 +28,8 @@ def overlaps(pair: Pair, displacement: NDArray[np.float64], offset: float) -> ND
     deepest = np.zeros(len(pair.contactor))
     if at is None or not len(at.gap):
         return deepest
-    change = np.zeros(len(at.gap))
-    for sign, surface, facet, shapes in (
-        (1.0, pair.contactor, at.facet, at.contactor_shapes),
-        (-1.0, pair.target, at.target_facet, at.target_shapes),
-    ):
-        nodes = np.maximum(surface.nodes[facet], 0)  # shape functions are zero where padded
-        for a in range(surface.dim):
-            change += sign * at.normal[:, a] * (shapes * displacement[nodes, a]).sum(axis=1)
-    depth = -(at.gap + offset + change) - SOLVED * float(np.abs(change).max())
+    gap, change = gaps_at(pair, at, displacement)
+    depth = -(gap + offset) - SOLVED * change
     chords = misfit(pair)
     if chords is not None:
         depth = np.minimum(depth, depth - unseen(pair, chords))

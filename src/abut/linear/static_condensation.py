@@ -79,6 +79,10 @@ class CondensedProblem:
             return self
         return condense(other) or other
 
+    def alone_at_edges(self, closed: NDArray[np.bool_], state: State | None = None) -> NDArray[np.bool_]:
+        """As in ``Problem``."""
+        return self.whole.alone_at_edges(closed, state)
+
     def expand(
         self, before: State, frame: Frame, state: State, laws: Laws, system: Linearised
     ) -> tuple[State, Linearised]:

@@ -150,7 +150,25 @@ def load_step(task: Task, time: float, prepared: Prepared) -> Attempt:
         return _ended(task, time, found, prepared, none)
     task = replace(task, problem=inner)
     found, prepared = solved(task, found.state, prepared, found.iterations, settle=True)
+    if inner is not problem and found.converged:
+        pressing = _pressing(task, found, prepared, inside)
+        if pressing.any():
+            inside = inside & ~pressing
+            inner = problem.with_ordinary(inside)
+            task = replace(task, problem=inner)
+            found, prepared = solved(task, found.state, prepared, found.iterations, settle=True)
     return _ended(task, time, found, prepared, none if inner is problem else inside)
+
+
+def _pressing(task: Task, found: Found, prepared: Prepared, inside: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Of the multipliers (n,) that were closed alone at an edge where both sides end, those that a converged state with
+    ordinary functions there leaves closed, or open where the sides lie in each other: dual functions were right."""
+    alone = task.problem.alone_at_edges(inside)
+    if not alone.any():
+        return alone
+    system = prepared.system if found.system is None else found.system
+    whole, _ = task.problem.expand(task.before, task.frame, found.state, found.laws, system)
+    return np.asarray(alone & (found.state.closed | ~task.problem.alone_at_edges(inside, whole)))
 
 
 def _ended(task: Task, time: float, found: Found, prepared: Prepared, inside: NDArray[np.bool_]) -> Attempt:

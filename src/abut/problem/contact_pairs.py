@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from abut.bodies.mirror import mirrors
 from abut.cells import CELLS
 from abut.contact.coupling import Couple, Coupling, couple, default_reach
+from abut.contact.flush_edges import FlushEdges
 from abut.contact.geometry import beside_others, facet_sizes, full_moments
 from abut.contact.pressure_space import (
     DUAL_P1,
@@ -116,6 +117,9 @@ def pair(
     constant, varying = offsets(model, contact)
     border = rim(contactor)
     beyond, sides_end = goes_on(contactor, border, target, reach), rim_of_sides(contactor)
+    interior = _interior(contactor, coupling, border, beyond) if space.name == DUAL_P1 else None
+    flush = None if interior is None or model.finite else FlushEdges.of(contactor, border, interior)
+    planes = planes_of(model, contactor, sides_end, goes_on(contactor, sides_end, target, reach), constraints)
     own_pair = Pair(
         contact, contactor, target, coupling, space, rows, free,
         prescribed=rows @ constraints.prescribed + np.multiply.outer(space.weight, varying),
@@ -123,8 +127,7 @@ def pair(
         scale=space.weight / stiffness, size=size, stiffness=stiffness, index=np.arange(len(space))[:, None],
         components=(space,), compliance=both.compliance, carried=held(space, contactor, constraints),
         points=None if contact.frictional else _points(coupling, space, constraints, both.young / sizes, constant, varying),
-        interior=_interior(contactor, coupling, border, beyond) if space.name == DUAL_P1 else None,
-        planes=planes_of(model, contactor, sides_end, goes_on(contactor, sides_end, target, reach), constraints),
+        interior=interior, flush=flush, planes=planes,
     )  # fmt: skip
     if not contact.frictional:
         return own_pair
@@ -212,6 +215,8 @@ def with_plain_functions(model: Model, earlier: Pair, constraints: Constraints, 
     if earlier.interior is None:
         return earlier
     inner = inner_facets(earlier.space, earlier.contactor, earlier.interior, active)
+    if earlier.flush is not None:
+        inner |= earlier.flush.facets(earlier.space, active)
     if not inner.any():
         return earlier
     return _in_space(

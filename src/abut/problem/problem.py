@@ -16,6 +16,7 @@ from abut.problem.expanded import expanded
 from abut.problem.frame import Frame
 from abut.problem.laws import LawRows
 from abut.problem.linearised import Linearised
+from abut.problem.sample_gaps import apart
 from abut.solution.state import ContactHistory, State, at_rest
 
 Laws = Callable[[Linearised, State], Sequence[LawRows]]
@@ -63,6 +64,11 @@ class Problem(Protocol):
     def with_ordinary(self, closed: NDArray[np.bool_]) -> Problem:
         """With the ordinary functions of "dual-P1" where the multipliers ``closed`` (n,) let them be; the same object where
         they are nowhere; theory (P9)."""
+        ...
+
+    def alone_at_edges(self, closed: NDArray[np.bool_], state: State | None = None) -> NDArray[np.bool_]:
+        """Multipliers (n,) that are ``closed`` alone at an edge where both sides end, theory (P26); of these, with a
+        state in all free displacements, the ones at which the sides are apart then."""
         ...
 
 
@@ -156,3 +162,16 @@ class ContactProblem(Discretised):
         if all(new is old for new, old in zip(pairs, self.pairs)):
             return self
         return replace(self, pairs=pairs, operator=stacked(pairs, self.n_free))
+
+    def alone_at_edges(self, closed: NDArray[np.bool_], state: State | None = None) -> NDArray[np.bool_]:
+        """As in ``Problem``."""
+        found = np.zeros(len(closed), dtype=bool)
+        for pair, own, part in zip(self.pairs, self.split(np.arange(len(closed))), self.split(closed)):
+            if pair.flush is None:
+                continue
+            alone = pair.flush.alone(pair.space, part)
+            if state is not None and alone.any():
+                moved = self.displacement(state).reshape(-1, self.model.dim)
+                alone = pair.flush.on(pair.space, alone, apart(pair, moved, self.added(pair, state.time)))
+            found[own] = alone
+        return found

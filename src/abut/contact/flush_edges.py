@@ -1,0 +1,62 @@
+"""Edges at which both sides of a contact end, as at a clamp common to both, and what is closed there alone; theory (P26)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from abut.cells import BY_CODE, MAX_FACET_NODES
+from abut.contact.pressure_space import PressureSpace
+from abut.contact.rim import Rim
+from abut.mesh.surface import Surface
+
+
+@dataclass(frozen=True)
+class FlushEdges:
+    """Of a contactor with n_facets. facet: (m,) quadratic ones with such an edge, once for each; at_edge: (m, 9) bool, their
+    corners on it."""
+
+    n_facets: int
+    facet: NDArray[np.int64]
+    at_edge: NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, contactor: Surface, border: Rim, interior: NDArray[np.bool_]) -> FlushEdges:
+        """border: of the contactor; interior: (n_facets,) bool, those that are covered all over, and at no edge beyond which
+        the target goes on."""
+        second = [cell.code for cell in BY_CODE if cell.degree == 2]
+        here = interior[border.facet] & np.isin(contactor.kinds[border.facet], second)
+        facet, ends = border.facet[here], border.ends[here]
+        nodes = contactor.nodes[facet]
+        count = np.array([BY_CODE[code].corners for code in contactor.kinds[facet].tolist()], dtype=np.int64)
+        corner = np.arange(MAX_FACET_NODES) < count[:, None]
+        return cls(len(contactor), facet, corner & (nodes[:, :, None] == ends[:, None, :]).any(axis=2))
+
+    def alone(self, space: PressureSpace, closed: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Functions (n_functions,) at such edges that are closed while no other is in any of their facets, but for others on
+        the edge. closed: (n_functions,)."""
+        if not len(self.facet):
+            return np.zeros(len(closed), dtype=bool)
+        uses = abs(space.plain)
+        sums: NDArray[np.float64] = np.asarray(uses @ closed.astype(float))
+        acts: NDArray[np.bool_] = np.asarray(sums.reshape(self.n_facets, MAX_FACET_NODES) > 0.0)
+        own: NDArray[np.bool_] = acts[self.facet]
+        only = own & self.at_edge & ~(own & ~self.at_edge).any(axis=1)[:, None]
+        good = acts & (acts.sum(axis=1) == 1)[:, None]
+        np.logical_or.at(good, self.facet, only)
+        there = np.zeros_like(acts)
+        np.logical_or.at(there, self.facet, self.at_edge)
+        at_edge, others = (np.asarray(uses.T @ each.ravel().astype(float) > 0.0) for each in (there, acts & ~good))
+        return np.asarray(closed & at_edge & ~others)
+
+    def on(self, space: PressureSpace, some: NDArray[np.bool_], facets: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Which of ``some`` functions (n_functions,) have given facets (n_facets,) alone."""
+        others = np.repeat(~facets, MAX_FACET_NODES).astype(float)
+        return np.asarray(some & ~(abs(space.plain).T @ others > 0.0))
+
+    def facets(self, space: PressureSpace, closed: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Facets (n_facets,) of those functions."""
+        acts = abs(space.plain) @ self.alone(space, closed).astype(float)
+        return np.asarray(acts.reshape(self.n_facets, MAX_FACET_NODES).any(axis=1))
