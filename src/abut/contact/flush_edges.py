@@ -42,8 +42,8 @@ class FlushEdges:
         uses = abs(space.plain)
         sums: NDArray[np.float64] = np.asarray(uses @ closed.astype(float))
         acts: NDArray[np.bool_] = np.asarray(sums.reshape(self.n_facets, MAX_FACET_NODES) > 0.0)
-        own: NDArray[np.bool_] = acts[self.facet]
-        only = own & self.at_edge & ~(own & ~self.at_edge).any(axis=1)[:, None]
+        own = acts[self.facet]
+        only = own & self.at_edge & ~(own & ~self.at_edge).any(axis=1, keepdims=True)
         good = acts & (acts.sum(axis=1) == 1)[:, None]
         np.logical_or.at(good, self.facet, only)
         there = np.zeros_like(acts)
