@@ -123,7 +123,7 @@ def test_pairs_that_come_and_go(nlgeom: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("card", "message"),
     [
-        ("*MODEL CHANGE, ADD\n1", "elements that come, or that go after"),
+        ("*MODEL CHANGE, ADD\n1", "element 1 is there already"),
         ("*MODEL CHANGE, TYPE=CONTACT PAIR\nSLAVE, MASTER", "either ADD or REMOVE"),
         ("*MODEL CHANGE, TYPE=CONTACT PAIR, REMOVE\nSLAVE, SLAVE", "no .CONTACT PAIR"),
     ],

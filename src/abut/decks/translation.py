@@ -101,12 +101,8 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     reasons = Reasons()
     for error in unsupported(deck):
         reasons.add(error)
-    plane, deck = plane_of(deck), with_stiff_beams(deck)
-    notes = [f"{block.code}: {block.type.instead}" for block in deck.blocks if block.type.instead]
-    notes += [*element_notes(deck), *loading_notes(deck)]
-    deck = cut(expanded(deck, is_finite(deck)))
-    notes = [*deck.notes, *notes, *overclosure_notes(deck, soft), *finite_notes(deck), *spring_notes(deck)]
-    notes += [*passing_notes(deck), *rubber_notes(deck)]
+    plane = plane_of(deck)
+    deck, notes = _made_solid(with_stiff_beams(deck), soft)
     made = pieces(deck)
     deck = with_ties_by_node(with_parts_coupled(deck, made, notes), notes)
     groups = Groups(deck)
@@ -157,6 +153,15 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     )
     model, output = with_tables(model, deck, asked, notes), output_options(model, deck, notes)
     return Translation(model, tuple(notes), deck.ignored, laws, output)
+
+
+def _made_solid(deck: Deck, soft: bool) -> tuple[Deck, list[str]]:
+    """A deck with solids in place of shells and beams, cut where bolts are tightened, and what there is to tell of it."""
+    notes = [f"{block.code}: {block.type.instead}" for block in deck.blocks if block.type.instead]
+    notes += [*element_notes(deck), *loading_notes(deck)]
+    deck = cut(expanded(deck, is_finite(deck)))
+    notes = [*deck.notes, *notes, *overclosure_notes(deck, soft), *finite_notes(deck), *spring_notes(deck)]
+    return deck, [*notes, *passing_notes(deck), *rubber_notes(deck)]
 
 
 def _vibrations(deck: Deck, groups: Groups, reasons: Reasons) -> tuple[Frequencies | Buckling, ...]:

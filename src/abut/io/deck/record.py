@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.io.deck.absence import Absence
 from abut.io.deck.elements import ElementType
 from abut.io.deck.mode_cards import Modes
 from abut.io.deck.output_cards import Request
@@ -253,15 +254,6 @@ class Transform:
     a: tuple[float, float, float]
     b: tuple[float, float, float]
     place: Place
-
-
-@dataclass(frozen=True)
-class Absence:
-    """Elements (n,) that are not there for a while. spans: the step (0, 1, ...) from which on they are away, and that from
-    which on they are there again, left out where they stay away."""
-
-    elements: Numbers
-    spans: tuple[tuple[int, ...], ...]
 
 
 @dataclass(frozen=True)

@@ -7,10 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from abut.io.deck.absence import Absence
 from abut.io.deck.cards import Card, Line, key
 from abut.io.deck.mesh_cards import MeshCards
 from abut.io.deck.reasons import Reasons
-from abut.io.deck.record import Absence, Deck, Faces, Numbers, Prescribed
+from abut.io.deck.record import Deck, Faces, Numbers, Prescribed
 
 ON_ELEMENTS = ("pressure", "gravity", "centrifugal")
 EMPTY = np.empty(0, np.int64)

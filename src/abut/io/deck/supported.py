@@ -67,6 +67,7 @@ READ: dict[str, tuple[str, ...]] = {
     "SPRING": ("ELSET", "NONLINEAR"),
     "GAP": ("ELSET",),
     "CYCLIC SYMMETRY MODEL": ("N", "TIE", "ELSET", "NGRAPH"),
+    "SELECT CYCLIC SYMMETRY MODES": ("NMIN", "NMAX"),  # of steps that ask for modes; others have none
     "PRE-TENSION SECTION": ("SURFACE", "NODE"),
     "EQUATION": (),
     "MPC": (),
@@ -98,7 +99,7 @@ QUIET = (
     "ENERGY PRINT", "ENERGY FILE", "ENERGY OUTPUT", "INTEGRATED OUTPUT", "FILE FORMAT", "FILE OUTPUT", "MONITOR",
     "TIME POINTS", "CONTROLS", "CONTACT CONTROLS", "SOLVER CONTROLS", "SECTION CONTROLS",
     "CONDUCTIVITY", "SPECIFIC HEAT", "GAP CONDUCTANCE", "GAP HEAT GENERATION", "DAMPING", "CONTACT DAMPING",
-    "PHYSICAL CONSTANTS", "VALUES AT INFINITY", "SELECT CYCLIC SYMMETRY MODES", "NO ANALYSIS",
+    "PHYSICAL CONSTANTS", "VALUES AT INFINITY", "NO ANALYSIS",
 )  # fmt: skip
 
 GENERATED = {  # nodes and elements that do not stand in the deck, or under numbers of their own
