@@ -71,7 +71,7 @@ def _place(time: float, forces: NDArray[np.float64], now: Flow) -> str:
 
 def _flow(assembled: Assembled, attempt: Attempt) -> Flow | None:
     """In the last state of an attempt that failed, whose own history is still the one before."""
-    problem, bodies, state = assembled.problem, assembled.bodies, attempt.state
+    problem, bodies, state = assembled.problem, assembled.bodies, attempt.reached or attempt.state
     motion = problem.motion(state.time, problem.values(state))
     motion = replace(motion, history=state.history.of(bodies.name), displacement=problem.displacement(state))
     return flow(problem.model.deformable, bodies.evaluate(motion, motion).history)

@@ -19,8 +19,8 @@ class Attempt:
     """The end of a load step. state: in all free displacements, with history and ``largest`` if it ``converged``; inside:
     (n,) bool, the multipliers in contact that tell where the functions of "dual-P1" are the ordinary ones; cycling: (n,)
     bool, multipliers that keep changing; time: at which it was to end; reason: why it did not converge, where more can be
-    said; whole: it ends where a step was asked to, not in between; between: as in ``Found``; balance: the problem at the
-    state, None where that is not known."""
+    said; whole: it ends where a step was asked to, not in between; between, reached: as in ``Found``; balance: the problem
+    at the state, None where that is not known."""
 
     number: int
     state: State
@@ -33,3 +33,4 @@ class Attempt:
     whole: bool = True
     between: NDArray[np.uint8] | None = None
     balance: Balance | None = None
+    reached: State | None = None

@@ -35,7 +35,8 @@ class Found:
     """What a search ends with. reason: why it did not converge, where more can be said than that; cycling: (n,) bool,
     multipliers that go in and out for ever, or whose law stays violated; laws: those of all pairs as the last iteration
     saw them, near any state; between: (n,) with friction, the statuses of the last iterations, the sum of 2^status; system:
-    the problem near the state, None where it has not been linearised there."""
+    the problem near the state, None where it has not been linearised there; reached: the last iterate, where the next one
+    is no state of the material, and ``state`` that which the step began with."""
 
     state: State
     iterations: tuple[Iteration, ...]
@@ -45,6 +46,7 @@ class Found:
     reason: str = ""
     between: NDArray[np.uint8] | None = None
     system: Linearised | None = None
+    reached: State | None = None
 
 
 def active_laws(system: Linearised, state: State) -> list[LawRows]:

@@ -87,7 +87,7 @@ def _ended(step: Step, found: Found, time: float) -> Attempt:
         state = step.problem.accepted(step.before, step.frame, state, found.system)
     return Attempt(
         step.increment.number, state, found.converged, found.iterations, found.cycling, none, time, step.failed,
-        balance=balance,
+        balance=balance, reached=None if found.reached is None else replace(found.reached, time=time),
     )  # fmt: skip
 
 

@@ -76,7 +76,8 @@ class Trial:
 class Step:
     """A load step to solve. before: the last converged state, its multipliers by the functions of ``frame``; limit: of
     iterations; careful: with a line search; drag: that it is led by, None without; asked: which laws hold. prepared: the
-    linear solver as it was last set up; done: its iterations, which grow; failed: why it ended without a solution."""
+    linear solver as it was last set up; done: its iterations, which grow, and the state
+    reached by the last one; failed: why it ended without a solution."""
 
     problem: ContactProblem
     before: State
@@ -91,6 +92,7 @@ class Step:
     prepared: Prepared | None = None
     done: list[Iteration] = field(default_factory=list)
     failed: str = ""
+    reached: State | None = None
 
     @property
     def settings(self) -> Settings:
@@ -144,7 +146,7 @@ def _solved(step: Step, guess: State | None, time: float) -> Found:
         if not step.done and step.before.time > 0.0:  # what is left open where it began
             begun, state = clocks.perf_counter(), replace(step.before, time=time)
             _report(step, _judged(step, step.problem.ahead(step.before, step.frame, time), state), begun)
-        return Found(step.before, tuple(step.done), False, none, friction_laws)
+        return Found(step.before, tuple(step.done), False, none, friction_laws, reached=step.reached)
     changing = here.changed if step.failed else none
     return Found(here.state, tuple(step.done), not step.failed, changing, friction_laws, system=here.own)
 
@@ -359,5 +361,6 @@ def _report(step: Step, here: Trial, begun: float) -> float:
         slipping=points(system, state.slipping, of_friction=True) if rubbing else None,
     )  # fmt: skip
     step.done.append(row)
+    step.reached = state
     step.observe(row)
     return now
