@@ -10,7 +10,7 @@ import pytest
 import abut
 from abut.mesh.make import rectangle
 from abut.nonlinear.holding import lifted
-from abut.nonlinear.hourglass import hourglassing
+from abut.nonlinear.hourglass import folds_at_once, hourglassing
 from abut.nonlinear.settings import DEFAULT
 from abut.nonlinear.unsettled import circling, gives_way, most_at
 from models.clamps import NAMED, WHOLE, clamp
@@ -102,3 +102,5 @@ def test_cells_that_fold(integration: str, share: float, told: bool) -> None:
     line = hourglassing(problem, state)
     assert (line != "") == told
     assert not told or f"volume is {1.0 - 2.0 * share / np.sqrt(3.0):.2g} of" in line
+    assert (folds_at_once(problem, problem.start(), state) != "") == told
+    assert folds_at_once(problem, state, state) == ""

@@ -12,13 +12,10 @@ from abut._core import block_pattern
 from abut.bodies.continuous import pressure_response, pressure_stiffness
 from abut.bodies.evaluation import History
 from abut.bodies.integrate import integrate
-from abut.bodies.integration import bulk_over_shear
-from abut.bodies.solids import UNHEATED, Array, Group, Solids, TemperatureChange
+from abut.bodies.solids import UNHEATED, Array, Solids, TemperatureChange
 from abut.materials.kernel import Since, Wanted
 from abut.materials.material import linear, symmetric
 from abut.types import Operator, Sparse
-
-NEARLY = 50.0  # bulk over shear modulus, Poisson's ratio 0.49: from where on volumes beyond first order cut steps
 
 
 @dataclass(frozen=True)
@@ -71,8 +68,7 @@ def respond(
     since: Since | None = None,
 ) -> Response:
     """Internal force, tangent (unless not wanted), new history and energy together; of finite strains theory (D1), (D2).
-    since: from where Newton's method came; that tangent of bodies that hardly change their volume is then of
-    theory (D24).
+    since: from where Newton's method came; the tangent is then that of theory (D24).
 
     Raises InputError for a material that returns arrays of other shapes than it should, and Inverted."""
     force, energy = np.zeros(solids.points.shape), np.zeros(solids.mesh.n_cells)
@@ -83,8 +79,7 @@ def respond(
     for group in solids.groups():
         of_cells = np.zeros(len(group.cells))
         wanted = Wanted(force, entries, energy=of_cells)
-        told = since if since is not None and _keeps_volume(solids, group) else None
-        new = integrate(solids, group, group.rule, moved, temperature, history, wanted, told)
+        new = integrate(solids, group, group.rule, moved, temperature, history, wanted, since)
         energy[group.cells] = of_cells
         after.setdefault(group.body, []).extend(new)
     history = {body: np.concatenate(parts) for body, parts in after.items() if body}
@@ -94,15 +89,6 @@ def respond(
         total, energy = total + more.force, energy + more.energy
         slope = None if slope is None or more.tangent is None else (slope + more.tangent).tocsr()
     return Response(total, slope, history, energy)
-
-
-def _keeps_volume(solids: Solids, group: Group) -> bool:
-    """Whether any body of a group hardly changes its volume. Pressures that are foreseen help these; others may come to
-    other solutions by them: a pad of K = 20 G that slides (examples/deck), its sides swapped, folds by F-bar."""
-    names = list(solids.materials)
-    bodies = [group.body] if group.body else [names[i] for i in np.unique(solids.body_of[group.cells])]
-    rest = [linear(solids.materials[body]) for body in bodies]
-    return any(each is not None and bulk_over_shear(each.poisson) > NEARLY for each in rest)
 
 
 def is_symmetric(solids: Solids) -> bool:

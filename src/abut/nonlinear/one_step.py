@@ -14,6 +14,7 @@ from abut.linear.solver import LinearSolver
 from abut.nonlinear.attempt import UNSTEADY, Attempt
 from abut.nonlinear.drag import Drag, scale
 from abut.nonlinear.holding import loosely_held
+from abut.nonlinear.hourglass import folds_at_once
 from abut.nonlinear.iteration import Found, Increment
 from abut.nonlinear.pace import Pace
 from abut.nonlinear.semismooth import Step, largest_of, solve_finite
@@ -65,6 +66,9 @@ class Setting:
             step, found = again, inside
         if found.converged and _spreads_on(step, found, time):
             step.failed, found = UNSTEADY, replace(found, converged=False)
+        if found.converged:
+            step.failed = folds_at_once(problem, before, found.state)
+            found = replace(found, converged=not step.failed)
         return _ended(step, found, time)
 
 
