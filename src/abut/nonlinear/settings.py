@@ -71,8 +71,8 @@ class StepSettings:
         6, "iterations", "up to which the next step is longer; shorter above twice, halved above four times as many",
         "test_pace.py, test_large_sliding.py",
     )  # fmt: skip
-    growth: float = _of(
-        1.5, "step over the last one", "after an easy step; its inverse after a hard one, and of what the onset of slip allows",
+    shorter: float = _of(
+        0.7, "step over the last one", "after a hard step; its inverse after an easy one; of what the onset of slip allows",
         "test_pace.py, test_onset_of_slip.py",
     )  # fmt: skip
     missed: float = _of(
