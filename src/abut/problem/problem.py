@@ -85,6 +85,8 @@ class ContactProblem(Discretised):
     def start(self) -> State:
         """As in ``Problem``: zero displacement; multipliers that touch at the outset are closed, theory (V6)."""
         rest = at_rest(self.n_free, int(self.operator.shape[0]))
+        if self.integration is not None:
+            rest = replace(rest, rates=self.integration.begins(self.model.dofs.size))
         return rest.with_closed(affine.touching(self)) if self.kinematics is None else load_steps.started(self, rest)
 
     def frame(self, before: State, guess: State | None = None) -> Frame:
@@ -135,7 +137,8 @@ class ContactProblem(Discretised):
             contacts = load_steps.remembered(self, before, frame, now, slips)
         else:
             contacts = {name: ContactHistory(slips=values) for name, values in slips.items()}
-        return replace(now, history=replace(history, contacts=contacts, drag=None))
+        rates = self.rates(before, now.time, self.values(now))
+        return replace(now, history=replace(history, contacts=contacts, drag=None), rates=rates and rates.converged)
 
     def expand(
         self, before: State, frame: Frame, state: State, laws: Laws, system: Linearised
