@@ -1,5 +1,5 @@
-"""Long tests end in time: series of random models and fine meshes come last, and what ABUT_LONG_TESTS_UNTIL leaves no time for is
-skipped, and says so."""
+"""Long tests end in time: series of random models and fine meshes come last, and what ABUT_LONG_TESTS_UNTIL leaves no time
+for is skipped, and says so."""
 
 import os
 import time
