@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from abut.errors import InputError
 from abut.model import Model
 from abut.model.conditions import weights
+from abut.model.rates import integration_of
 from abut.problem.adjusted_gaps import taken_off
 from abut.problem.backend import Backend
 from abut.problem.body_terms import Bodies, DeadLoads, LinearBodies, SolidBodies
@@ -108,6 +109,7 @@ def assemble(
         unit=unit_of(reduced) if affine else 0.0,
         kinematics=[kinematics(pair, constraints, backend) for pair in every] if model.finite else None,
         own=frozenset(term.name for term in own),
+        integration=integration_of(model.physics),
     )
     _describe_cells(model, note)
     note(f"{reduced.shape[0]} free displacements, {sum(map(len, every))} multipliers")

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.materials.kernel import Since
+from abut.model.rates import Rates
 from abut.problem.constraints import Constraints
 from abut.problem.wet import Wet
 from abut.types import Operator
@@ -48,13 +49,14 @@ class MatrixTangent:
 @dataclass(frozen=True)
 class Motion:
     """What a term sees of a state. displacement: (dim n_points,) of all points; history: the term's, by part, empty at the
-    start; fields: others by name, (places, components); wet: how far fluids have got into contacts, in turn; since: from
-    where Newton's method came, None: from nowhere."""
+    start; fields: others by name, (places, components); rates: of all values (n_values,), None without a time integration;
+    wet: how far fluids have got into contacts, in turn; since: from where Newton's method came, None: from nowhere."""
 
     time: float
     displacement: Vector
     history: Mapping[str, Vector] = field(default_factory=dict)
     fields: Mapping[str, Vector] = field(default_factory=dict)
+    rates: Rates | None = None
     wet: Sequence[Wet] = ()
     since: Since | None = None
 
