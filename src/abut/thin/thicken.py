@@ -113,7 +113,8 @@ def made_solid(
     mesh = build(Mesh, RawMesh(solid.points, {**parts.others, **solid.groups}, raw.notes), where)
     check_mesh(mesh)
     shells = tuple(name for name, section in sections.items() if isinstance(section, Shell))
-    return Thick(replace(mesh, shells=shells), holding, bonded, given, tuple(joined))
+    beams = tuple(name for name in sections if name not in shells)
+    return Thick(replace(mesh, shells=shells, beams=beams), holding, bonded, given, tuple(joined))
 
 
 def _groups(deck: Deck, parts: Sorted, sections: Mapping[str, Thin]) -> Groups:
