@@ -6,7 +6,6 @@ from functools import cache
 from itertools import combinations_with_replacement, product
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut._core import shape_functions
@@ -17,9 +16,9 @@ from abut.bodies.solids import Array, Solids, TemperatureChange
 from abut.bodies.stress import PointStress
 from abut.cells import CELLS
 from abut.mesh.reference import reference_nodes
-from abut.types import Sparse
 
 TENSOR = ((0, 3, 5), (3, 1, 4), (5, 4, 2))  # components of a tensor's rows in xx yy zz xy yz zx
+AT_ONCE = 1000  # cells, of which what is in work stays in the cache
 PAIRS = {dim: list(combinations_with_replacement(range(dim), 2)) for dim in (2, 3)}
 TRIPLES = {dim: list(combinations_with_replacement(range(dim), 3)) for dim in (2, 3)}
 
@@ -39,53 +38,54 @@ def straight(solids: Solids) -> NDArray[np.bool_]:
 def without_interpolation(fits: Fits, temperature: TemperatureChange) -> PointStress:
     """The stresses ``fits.stress`` less C (e(I u) - e(u)) in the middle of each of the ``straight`` cells, with I u the
     interpolate between the nodes of a displacement u whose strains bend as the polynomials do; other cells as they are."""
-    solids, chosen = fits.sampling.solids, straight(fits.sampling.solids)
-    of, dim = solids.patches, solids.mesh.dim
+    solids = fits.sampling.solids
+    chosen, of = straight(solids), solids.patches
     origin = fits.sampling.centre.mean(axis=0)
     slope, second = _derivatives(fits, origin)
-    bends = np.any(second != 0.0, axis=(1, 2)).astype(float)  # polynomials at free ends are linear: they do not tell
+    bends = np.any(second != 0.0, axis=(1, 2)).astype(float)
     patch = np.full(len(of.point), -1, dtype=np.int64)
     patch[of.corner] = np.arange(len(of.corner))
     compliance, which = compliances(solids)
-    stiffness = stiffnesses(compliance, solids.plane, dim)
+    stiffness = stiffnesses(compliance, solids.plane, solids.mesh.dim)
     result = []
     for group, stress in zip(solids.groups(), fits.stress):
-        rows = np.flatnonzero(chosen[group.cells])
-        if not len(rows):
-            result.append(stress)
-            continue
-        cells, x = group.cells[rows], solids.points[group.nodes[rows]]
-        number, middle = which[cells], x.mean(axis=1)
-        slopes = slopes_in_middle(group.kind, x)
-        around = _means(patch[of.of_cells(cells, solids.mesh.starts)], len(bends))
-        curve = _weighted(around, second)
-        steep = _weighted(around, slope)
-        for row, (a, b) in enumerate(PAIRS[dim]):
-            steep[:, a] += curve[:, row] * (middle - origin)[:, b, None]
-            if a != b:
-                steep[:, b] += curve[:, row] * (middle - origin)[:, a, None]
-        curve /= np.maximum(around @ bends, 0.5 / x.shape[1])[:, None, None]
-        first, further = (_strains(compliance[number], of_stress) for of_stress in (steep, curve))
-        swelling = thermal(solids, temperature, group.nodes[rows], cells)
-        if swelling is not None:
-            first[..., :3] += np.einsum("ck,cka->ca", swelling, slopes)[..., None]
-        radius = middle[:, 0] if solids.mesh.axisymmetric else None
-        error = missed_strains(slopes, x - middle[:, None], first, further, radius)
-        mended = stress.copy()
-        mended[rows, :, : error.shape[1]] -= (stiffness[number] @ error[..., None])[:, None, :, 0]
+        every = np.flatnonzero(chosen[group.cells])
+        mended = stress.copy() if len(every) else stress
+        for rows in np.split(every, range(AT_ONCE, len(every), AT_ONCE)) if len(every) else ():
+            cells, nodes = group.cells[rows], group.nodes[rows]
+            at = solids.points[nodes] - origin
+            corners = patch[of.of_cells(cells, solids.mesh.starts)]
+            steep, curve = (
+                _strains(compliance[which[cells]], d) for d in _in_middles(corners, at, slope, second, bends)
+            )
+            shapes = slopes_in_middle(group.kind, at)
+            swelling = thermal(solids, temperature, nodes, cells)
+            if swelling is not None:
+                steep[..., :3] += np.einsum("ck,cka->ca", swelling, shapes)[..., None]
+            middle = at.mean(axis=1)
+            radius = middle[:, 0] + origin[0] if solids.mesh.axisymmetric else None
+            error = missed_strains(shapes, at - middle[:, None], steep, curve, radius)
+            mended[rows, :, : error.shape[1]] -= (stiffness[which[cells]] @ error[..., None])[:, None, :, 0]
         result.append(mended)
     return tuple(result)
 
 
-def _means(corners: NDArray[np.int64], n_patches: int) -> Sparse:
-    """(n_cells, n_patches) CSR of the mean over the corners of each cell."""
-    count, each = corners.shape
-    starts = np.arange(0, count * each + 1, each)
-    return sp.csr_matrix((np.full(count * each, 1.0 / each), corners.ravel(), starts), shape=(count, n_patches))
+def _in_middles(
+    corners: NDArray[np.int64], at: Array, slope: Array, second: Array, bends: Array
+) -> tuple[Array, Array]:
+    """Slopes (cells, dim, C) and second derivatives (cells, pairs, C) in the middles of cells: the means of those of the
+    polynomials round their corners, the second ones of those that are not linear, as they are where bodies end.
 
-
-def _weighted(of: Sparse, values: Array) -> Array:
-    return np.asarray(of @ values.reshape(len(values), -1)).reshape(of.shape[0], *values.shape[1:])
+    corners: (cells, k) patches; at: (cells, k, dim) from where the slopes of the polynomials are taken;
+    bends: (n_patches,) 1 for those that are not linear."""
+    dim, middle = at.shape[2], at.mean(axis=1)
+    curve, steep = (sum(of[corner] for corner in corners.T) / corners.shape[1] for of in (second, slope))
+    for row, (a, b) in enumerate(PAIRS[dim]):
+        steep[:, a] += curve[:, row] * middle[:, b, None]
+        if a != b:
+            steep[:, b] += curve[:, row] * middle[:, a, None]
+    told = bends[corners].mean(axis=1)
+    return steep, curve / np.where(told > 0.0, told, 1.0)[:, None, None]
 
 
 def _derivatives(fits: Fits, origin: Array) -> tuple[Array, Array]:
@@ -93,14 +93,14 @@ def _derivatives(fits: Fits, origin: Array) -> tuple[Array, Array]:
     dim, coefficients = len(origin), fits.coefficients
     own = np.linalg.inv(np.tril(fits.metrics))
     slope = np.swapaxes(own, 1, 2) @ coefficients[:, 1 : 1 + dim]
-    second = np.zeros((len(own), len(PAIRS[dim]), coefficients.shape[2]))
+    share = np.zeros((len(own), len(PAIRS[dim]), len(PAIRS[dim])))
+    for row, (a, b) in enumerate(PAIRS[dim]):
+        for term, (c, d) in enumerate(PAIRS[dim]):
+            if c >= a and d >= b:  # of a lower triangle; d >= c and b >= a
+                share[:, row, term] = own[:, c, a] * own[:, d, b] + own[:, c, b] * own[:, d, a]
+    second = share @ coefficients[:, 1 + dim :]
     away = origin - fits.sampling.centre
     for row, (a, b) in enumerate(PAIRS[dim]):
-        for term, (c, d) in enumerate(PAIRS[dim], start=1 + dim):  # d >= c, and of a lower triangle d >= b and c >= a
-            if d < b or c < a:
-                continue
-            share = own[:, c, a] * own[:, d, b] + own[:, c, b] * own[:, d, a]
-            second[:, row] += share[:, None] * coefficients[:, term]
         slope[:, a] += second[:, row] * away[:, b, None]
         if a != b:
             slope[:, b] += second[:, row] * away[:, a, None]
