@@ -1,4 +1,4 @@
-"""Masses at points as a term with rates, which it keeps in its history: all that it takes, outside of abut."""
+"""Masses and dashpots at points as a term with rates: all that it takes, outside of abut."""
 
 from __future__ import annotations
 
@@ -18,26 +18,12 @@ from abut.types import Array
 
 
 @dataclass(frozen=True)
-class Newmark:
-    """Average acceleration (gamma = 1/2, beta = 1/4): a1 = 4 (u1 - u0) / h^2 - 4 v0 / h - a0, v1 = v0 + h (a0 + a1) / 2."""
-
-    step: float
-
-    def rates(self, moved: Array, velocity: Array, acceleration: Array) -> tuple[Array, Array]:
-        """At the end of a step over which points have moved by so much."""
-        h = self.step
-        after = 4.0 * moved / h**2 - 4.0 * velocity / h - acceleration
-        return velocity + 0.5 * h * (acceleration + after), after
-
-
-@dataclass(frozen=True)
 class Inertia:
-    """mass: at each node of a surface; duration: of the time from 0 to 1; begins: acceleration (dim,) at the start."""
+    """mass, damping: force over acceleration and over velocity, at each node of a surface."""
 
     on: str
     mass: float
-    duration: float
-    begins: tuple[float, ...]
+    damping: float = 0.0
 
     @property
     def amplitudes(self) -> Sequence[History]:
@@ -61,22 +47,12 @@ class InertiaTerm:
     at: Array
     size: int
     name: str = "inertia"
-    constant: bool = True
+    constant: bool = False
 
     def evaluate(self, before: Motion, now: Motion) -> Share:
-        h = (now.time - before.time) * self.given.duration
-        first = {"velocity": np.zeros(self.at.shape), "acceleration": np.zeros(self.at.shape) + self.given.begins}
-        known = {**first, **before.history}
-        if h == 0.0:
-            velocity, acceleration, slope = known["velocity"], known["acceleration"], 0.0
-        else:
-            moved = now.displacement[self.at] - before.displacement[self.at]
-            velocity, acceleration = Newmark(h).rates(moved, known["velocity"], known["acceleration"])
-            slope = self.given.mass * 4.0 / h**2
-        force = np.zeros(self.size)
-        force[self.at] = self.given.mass * acceleration
-        diagonal = np.zeros(self.size)
-        diagonal[self.at] = slope
-        return Share(
-            force, MatrixTangent(sp.diags(diagonal).tocsr()), {"velocity": velocity, "acceleration": acceleration}
-        )
+        assert now.rates is not None, "the physics of a model with inertia have a time integration"
+        (by_velocity, by_acceleration), mass, damping = now.rates.slopes, self.given.mass, self.given.damping
+        force, diagonal = np.zeros(self.size), np.zeros(self.size)
+        force[self.at] = mass * now.rates.accelerations[self.at] + damping * now.rates.velocities[self.at]
+        diagonal[self.at] = mass * by_acceleration + damping * by_velocity
+        return Share(force, MatrixTangent(sp.diags(diagonal).tocsr()))

@@ -18,6 +18,7 @@ from abut.errors import InputError
 from abut.io.atomic import make_directory, write_file
 from abut.io.names import is_file
 from abut.model import Model
+from abut.model.rates import Rates
 from abut.solution import History, Iteration, Largest, Saved, SavedPart, State
 from abut.solution.state import CLOSED, OPEN, SLIPPING, ContactHistory
 
@@ -25,6 +26,7 @@ FOLDER = "restart"
 SCHEMA = 5  # of the files
 ARRAYS = ("unknowns", "multipliers", "status")  # of the state
 HISTORY, CONTACT, DRAG = "history.", "contact.", "drag"  # what the names of the other ones begin with, or are
+RATES = ("velocities", "accelerations")  # with a time integration
 FIELDS = ("slips", "inner", "following", "fit")  # of a contact's history
 COUNTS, SIZES = ("step", "iteration", "active", "changed"), ("residual", "contact_residual", "penetration", "seconds")
 NAMED = 4  # differences of a changed model that the message lists
@@ -97,6 +99,8 @@ def _arrays(state: State, inside: NDArray[np.bool_], of: str) -> dict[str, Any]:
         arrays |= {f"{of}{CONTACT}{part}.{name}": np.asarray(v) for part, v in parts.items() if v is not None}
     if state.history.drag is not None:
         arrays[of + DRAG] = state.history.drag
+    if state.rates is not None:
+        arrays |= {of + name: getattr(state.rates, name) for name in RATES}
     largest = np.array([state.largest.force, state.largest.pressure])
     return {**arrays, of + "inside": inside, of + "time": np.array(state.time), of + "largest": largest}
 
@@ -116,7 +120,8 @@ def _state(data: Mapping[str, Any], names: Sequence[str], of: str) -> tuple[Stat
         raise ValueError("not the arrays of a state")
     drag = data[of + DRAG] if of + DRAG in names else None
     whole = History(history, _contacts(data, names, of + CONTACT), drag)
-    return State(time, **arrays, history=whole, largest=Largest(*map(float, largest))), inside
+    rates = Rates(*(data[of + name] for name in RATES)) if of + RATES[0] in names else None
+    return State(time, **arrays, history=whole, largest=Largest(*map(float, largest)), rates=rates), inside
 
 
 def _contacts(data: Mapping[str, Any], names: Sequence[str], of: str) -> dict[str, ContactHistory]:

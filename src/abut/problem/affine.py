@@ -47,7 +47,9 @@ def frame(problem: Discretised, before: State) -> Frame:
 def linearised(problem: Discretised, before: State, frame: Frame, now: State) -> Linearised:
     """The problem near the state ``now``."""
     began, here = (problem.values(state) for state in (before, now))
-    shares = problem.shares(before, problem.motion(before.time, began), problem.motion(now.time, here), frame)
+    there = problem.motion(before.time, began, before.rates)
+    motion = problem.motion(now.time, here, problem.rates(before, now.time, here))
+    shares = problem.shares(before, there, motion, frame)
     factors = weights(problem.model.histories, now.time)
     force = problem.constraints.forces(added_up([share.force for share in shares], len(here)))
     if problem.stiffness is not None:

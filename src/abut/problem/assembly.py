@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.bodies.factor_memory import AFFORDED
 from abut.errors import InputError
 from abut.model import Model
 from abut.model.conditions import weights
+from abut.model.rates import integration_of
 from abut.problem.adjusted_gaps import taken_off
 from abut.problem.backend import Backend
 from abut.problem.body_terms import Bodies, DeadLoads, LinearBodies, SolidBodies
@@ -109,6 +109,7 @@ def assemble(
         unit=unit_of(reduced) if affine else 0.0,
         kinematics=[kinematics(pair, constraints, backend) for pair in every] if model.finite else None,
         own=frozenset(term.name for term in own),
+        integration=integration_of(model.physics),
     )
     _describe_cells(model, note)
     note(f"{reduced.shape[0]} free displacements, {sum(map(len, every))} multipliers")
@@ -121,9 +122,6 @@ def _describe_cells(model: Model, note: Callable[[str], None]) -> None:
     for solid in model.solids:
         if solid.integration == "auto" and (how := model.integration(solid)) != "full":
             note(f"body '{solid.body}': integration = \"{how}\", as cells that keep their volume would lock otherwise")
-    for body in model.integrations.too_wide:
-        much = f"{AFFORDED / 1000.0:.0f} GB"
-        note(f'body \'{body}\': integration = "full", which is too stiff here; "mixed" would need more than {much}')
 
 
 def _bodies(model: Model, loaded: Loads, backend: Backend) -> Bodies:

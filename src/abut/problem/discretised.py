@@ -14,6 +14,7 @@ from abut.dofs import DISPLACEMENT
 from abut.model import Model
 from abut.model.conditions import weights
 from abut.model.offset import offsets
+from abut.model.rates import Rates, TimeIntegration
 from abut.problem.constraints import Constraints
 from abut.problem.frame import Frame
 from abut.problem.free_modes import FreeModeSprings
@@ -33,7 +34,7 @@ class Discretised:
     (n, n_free) all of them stacked; restraint: of rigid-body modes; springs: on free rigid-body modes; stiffness:
     (n_free, n_free) where every term is constant, else None; motions: (n_free, m) rigid-body modes that supports leave free;
     unit: size of the stiffness' entries, where it is constant; kinematics: of each pair at current positions, None where all
-    is looked at where bodies were; own: names of the terms of other physics.
+    is looked at where bodies were; own: names of the terms of other physics; integration: how rates follow from values.
     """
 
     model: Model
@@ -48,6 +49,7 @@ class Discretised:
     unit: float = 0.0
     kinematics: Sequence[Kinematics] | None = None
     own: frozenset[str] = frozenset()
+    integration: TimeIntegration | None = None
 
     @property
     def n_free(self) -> int:
@@ -64,12 +66,18 @@ class Discretised:
             return displacement
         return np.concatenate([displacement, others.values(state.unknowns, weights(self.model.histories, state.time))])
 
-    def motion(self, time: float, values: NDArray[np.float64]) -> Motion:
-        """What terms see of values of all fields, (n_values,)."""
+    def motion(self, time: float, values: NDArray[np.float64], rates: Rates | None = None) -> Motion:
+        """What terms see of values of all fields, (n_values,), and of their rates."""
         if self.constraints.others is None:
-            return Motion(time, values)
+            return Motion(time, values, rates=rates)
         fields = self.constraints.others.dofs.named(values)
-        return Motion(time, fields.pop(DISPLACEMENT).ravel(), fields=fields)
+        return Motion(time, fields.pop(DISPLACEMENT).ravel(), fields=fields, rates=rates)
+
+    def rates(self, before: State, time: float, values: NDArray[np.float64]) -> Rates | None:
+        """Of values (n_values,) at a time, which follow a converged state."""
+        if self.integration is None or before.rates is None:
+            return None
+        return self.integration.after(before.rates, values - self.values(before), time - before.time)
 
     def sizes(
         self, shares: Sequence[Share], states: Sequence[State], stiffness: Operator

@@ -41,11 +41,11 @@ def expanded(
     there = weights(problem.model.histories, before.time) if change.any() else factors
     constraints = problem.constraints.near(now.unknowns, there)
     began, contacts = problem.values(before), list[ContactNow]()
-    motion = problem.motion(now.time, here)
+    motion = problem.motion(now.time, here, problem.rates(before, now.time, here))
     if since is not None:
         began_at = problem.displacement(since).reshape(problem.model.mesh.points.shape)
         motion = replace(motion, since=Since(np.ascontiguousarray(began_at), guessed))
-    shares = problem.shares(before, problem.motion(before.time, began), motion, frame)
+    shares = problem.shares(before, problem.motion(before.time, began, before.rates), motion, frame)
     n = constraints.free.shape[0]
     assert problem.kinematics is not None
     for kind, part, placed in zip(problem.kinematics, frame.pairs, problem.placed(now)):

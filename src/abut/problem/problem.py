@@ -62,8 +62,8 @@ class Problem(Protocol):
         ...
 
     def with_ordinary(self, closed: NDArray[np.bool_]) -> Problem:
-        """With the ordinary functions of "dual-P1" where the multipliers ``closed`` (n,) let them be; the same object where
-        they are nowhere; theory (P9)."""
+        """With ordinary functions in place of dual ones where the multipliers ``closed`` (n,) let them be; the same object
+        where they are nowhere; theory (P9), (P26)."""
         ...
 
     def alone_at_edges(self, closed: NDArray[np.bool_], state: State | None = None) -> NDArray[np.bool_]:
@@ -85,6 +85,8 @@ class ContactProblem(Discretised):
     def start(self) -> State:
         """As in ``Problem``: zero displacement; multipliers that touch at the outset are closed, theory (V6)."""
         rest = at_rest(self.n_free, int(self.operator.shape[0]))
+        if self.integration is not None:
+            rest = replace(rest, rates=self.integration.begins(self.model.dofs.size))
         return rest.with_closed(affine.touching(self)) if self.kinematics is None else load_steps.started(self, rest)
 
     def frame(self, before: State, guess: State | None = None) -> Frame:
@@ -135,7 +137,8 @@ class ContactProblem(Discretised):
             contacts = load_steps.remembered(self, before, frame, now, slips)
         else:
             contacts = {name: ContactHistory(slips=values) for name, values in slips.items()}
-        return replace(now, history=replace(history, contacts=contacts, drag=None))
+        rates = self.rates(before, now.time, self.values(now))
+        return replace(now, history=replace(history, contacts=contacts, drag=None), rates=rates and rates.converged)
 
     def expand(
         self, before: State, frame: Frame, state: State, laws: Laws, system: Linearised
@@ -169,9 +172,9 @@ class ContactProblem(Discretised):
         for pair, own, part in zip(self.pairs, self.split(np.arange(len(closed))), self.split(closed)):
             if pair.flush is None:
                 continue
-            alone = pair.flush.alone(pair.space, part)
+            alone = pair.flush.alone(pair.space, part[pair.normal])
             if state is not None and alone.any():
                 moved = self.displacement(state).reshape(-1, self.model.dim)
                 alone = pair.flush.on(pair.space, alone, apart(pair, moved, self.added(pair, state.time)))
-            found[own] = alone
+            found[own[pair.normal]] = alone
         return found

@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.materials.kernel import Since
+from abut.model.rates import Rates
 from abut.problem.constraints import Constraints
 from abut.problem.wet import Wet
-from abut.types import Operator, Sparse
+from abut.types import Operator
 
 Vector = NDArray[np.float64]
 
@@ -31,29 +32,31 @@ class Tangent(Protocol):
 
 @dataclass(frozen=True)
 class MatrixTangent:
-    """A tangent that is a sparse matrix: over all values (n_values, n_values), or over displacements alone."""
+    """A tangent that is a matrix, sparse or ``Bordered``: over all values (n_values, n_values), or over displacements
+    alone."""
 
-    matrix: Sparse
+    matrix: Operator
 
     def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
         """As in ``Tangent``."""
         return np.asarray(self.matrix @ displacement)
 
-    def reduce(self, constraints: Constraints) -> Sparse:
-        """As in ``Tangent``, CSR."""
-        return constraints.reduce(self.matrix)
+    def reduce(self, constraints: Constraints) -> Operator:
+        """As in ``Tangent``."""
+        return constraints.reduced(self.matrix)
 
 
 @dataclass(frozen=True)
 class Motion:
     """What a term sees of a state. displacement: (dim n_points,) of all points; history: the term's, by part, empty at the
-    start; fields: others by name, (places, components); wet: how far fluids have got into contacts, in turn; since: from
-    where Newton's method came, None: from nowhere."""
+    start; fields: others by name, (places, components); rates: of all values (n_values,), None without a time integration;
+    wet: how far fluids have got into contacts, in turn; since: from where Newton's method came, None: from nowhere."""
 
     time: float
     displacement: Vector
     history: Mapping[str, Vector] = field(default_factory=dict)
     fields: Mapping[str, Vector] = field(default_factory=dict)
+    rates: Rates | None = None
     wet: Sequence[Wet] = ()
     since: Since | None = None
 

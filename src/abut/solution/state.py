@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.contact.slip_points import Past
+from abut.model.rates import Rates
 
 Vector = NDArray[np.float64]
 OPEN, CLOSED, SLIPPING = np.int8(0), np.int8(1), np.int8(2)  # status of a multiplier; closed with friction: stuck
@@ -73,7 +74,8 @@ class State:
     time: in (0, 1]; unknowns: (n_free,) free displacements; multipliers: (n,) of all contact pairs, pair by pair (pressure,
     force per area, or the components of a tie's traction); status: (n,) int8, ``OPEN``, ``CLOSED``
     or, with friction, ``SLIPPING``; history: of bodies
-    and contacts; largest: over all converged states up to this one.
+    and contacts; largest: over all converged states up to this one; rates: of the values of all fields at a converged state,
+    None without a time integration.
     """
 
     time: float
@@ -82,6 +84,7 @@ class State:
     status: NDArray[np.int8]
     history: History = field(default_factory=History)
     largest: Largest = field(default_factory=Largest)
+    rates: Rates | None = None
 
     @property
     def closed(self) -> NDArray[np.bool_]:
