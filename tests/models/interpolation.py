@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.bodies.recovery import compliances
+from abut.bodies.compliance import compliances
 from abut.bodies.solids import Solids
 from abut.mesh.quadrature import gauss_rule
 from abut.types import Array

@@ -39,11 +39,12 @@ def hertz_line(cell: str, n: int) -> abut.Model:
     )
 
 
-def hertz_ball(cell: str, n: int) -> abut.Model:
-    """A ball on a rigid plane, axisymmetric or an octant, 0.9 n facets on the radius of contact."""
+def hertz_ball(cell: str, n: int, growth: float = 2.0) -> abut.Model:
+    """A ball on a rigid plane, axisymmetric or an octant, whose layers grow by ``growth``, 0.9 n facets on the radius of
+    contact."""
     material, solid = abut.LinearElastic(1000.0, NU), CELLS[cell].dim == 3
     if solid:
-        whole = sphere_octant(8.0, (0.0, 0.0, 8.0), fine=0.11, cells=n, growth=2.0, cell=cell)
+        whole = sphere_octant(8.0, (0.0, 0.0, 8.0), fine=0.11, cells=n, growth=growth, cell=cell)
         parts = {"ball": whole, "plane": box((0.0, 8.0), (0.0, 8.0), (-1.0, 0.0), (1, 1, 1))}
         held = [abut.Support(f"plane.{side}", x=0, y=0, z=0) for side in ("bottom", "top")]
         held += [abut.Support("ball.x0", x=0), abut.Support("ball.y0", y=0)]

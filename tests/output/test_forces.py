@@ -92,21 +92,24 @@ def _streamed(model: abut.Model, stream: Stream) -> abut.Solution:
 
 
 def test_files_of_some_fields(tmp_path: Path) -> None:
-    """What is asked for and the body's number; principal stresses of simple tension; numbers of 32 bits but for places."""
+    """What is asked for and the body's number; principal stresses of simple tension, largest shear its half; numbers of
+    32 bits but for places."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
     solution = abut.solve(drawn(1))
-    abut.write(solution, tmp_path, output=abut.Output(fields=["principal-stress", "displacement"]))
+    abut.write(solution, tmp_path, output=abut.Output(fields=["principal-stress", "max-shear", "displacement"]))
     reader = vtkXMLUnstructuredGridReader()
     reader.SetFileName(str(tmp_path / "fields_0001.vtu"))
     reader.Update()
     points, cells = reader.GetOutput().GetPointData(), reader.GetOutput().GetCellData()
-    assert {points.GetArrayName(i) for i in range(points.GetNumberOfArrays())} == {"principal_stress", "displacement"}
+    names = {points.GetArrayName(i) for i in range(points.GetNumberOfArrays())}
+    assert names == {"principal_stress", "max_shear", "displacement"}
     assert [cells.GetArrayName(i) for i in range(cells.GetNumberOfArrays())] == ["body"]
     stress = vtk_to_numpy(points.GetArray("principal_stress"))
     assert stress.dtype == np.float32
     assert stress == pytest.approx(np.tile([YOUNG * 0.01, 0.0, 0.0], (len(stress), 1)), abs=1e-5)
+    assert vtk_to_numpy(points.GetArray("max_shear")) == pytest.approx(YOUNG * 0.005, abs=1e-5)
     assert (vtk_to_numpy(points.GetArray("displacement"))[:, :2] == solution.displacement).all()
     assert len(read_vtu(tmp_path / "fields_0001.vtu").points) == len(solution.model.mesh.points)
 

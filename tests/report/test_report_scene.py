@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import abut
-from abut.materials.invariants import principal, von_mises
+from abut.materials.invariants import max_shear, principal, von_mises
 from abut.mesh import make
 from abut.model.mirror_planes import mirrors
 from abut.report import write_report
@@ -43,6 +43,8 @@ def test_principal_stresses() -> None:
     matrix = stress[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2]]]
     size = np.abs(stress).max(axis=1, keepdims=True) + 1e-300
     assert principal(stress) / size == pytest.approx(np.linalg.eigvalsh(matrix)[:, ::-1] / size, abs=3e-8)
+    ends = np.linalg.eigvalsh(matrix)[:, [0, 2]]
+    assert max_shear(stress) / size[:, 0] == pytest.approx(0.5 * (ends[:, 1] - ends[:, 0]) / size[:, 0], abs=3e-8)
 
 
 def test_no_negative_von_mises() -> None:

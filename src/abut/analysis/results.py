@@ -111,7 +111,7 @@ def step_result(
     contacts = _contacts(end, attempt, before, averages(solids, shown.stress if shown else own), shown)
     change = heated(model, assembled.loaded, end.motion)
     known = known_stress(model, points, moved, state.time, change, list(zip(balance.pairs, contacts)))
-    values = recovered(solids, points, own, known, None if shown is None else shown.fits)
+    values = recovered(solids, points, own, known, None if shown is None else shown.fits, change)
     stress = at_points(solids.patches, values, len(points))
     told = _finite_energy if model.finite else _energy
     acting, work = told(end, attempt, acted, contacts, before)

@@ -34,6 +34,7 @@ from abut.benchmarks import (
     punches,
     removals,
     stability,
+    subsurface,
 )
 from abut.benchmarks.record import Benchmark, Outcome, Reference, run
 
@@ -44,6 +45,7 @@ BENCHMARKS: dict[str, Benchmark] = {
     for b in (
         *patch.BENCHMARKS,
         *hertz.BENCHMARKS,
+        *subsurface.BENCHMARKS,
         *fits.BENCHMARKS,
         *punches.BENCHMARKS,
         *contrast.BENCHMARKS,

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from abut._core import interpolation_forces as compiled_forces
 from abut._core import shape_functions
-from abut.bodies.recovery import compliances
+from abut.bodies.compliance import compliances
 from abut.bodies.solids import Array, Solids, TemperatureChange
 from abut.cells import CELLS
 from abut.materials.places import uniform_expansion
@@ -30,7 +30,7 @@ def interpolation_forces(solids: Solids, stress: Sequence[Array | None], tempera
     mesh, dim = solids.mesh, solids.mesh.dim
     result = np.zeros(mesh.points.shape)
     compliance, which = compliances(solids)
-    stiffness = _stiffness(compliance, solids.plane, dim)
+    stiffness = stiffnesses(compliance, solids.plane, dim)
     for block, first, values in zip(mesh.blocks, mesh.starts.tolist(), stress):
         if values is None or block.kind not in SIMPLEX:
             continue
@@ -42,14 +42,14 @@ def interpolation_forces(solids: Solids, stress: Sequence[Array | None], tempera
         code, rule = CELLS[block.kind].code, gauss_rule(block.kind, ORDER if mesh.axisymmetric else 1)
         shapes, derivatives = shape_functions(code, np.ascontiguousarray(rule[0]))
         result += compiled_forces(
-            solids.points, nodes, np.ascontiguousarray(at), _thermal(solids, temperature, nodes, first + cells),
+            solids.points, nodes, np.ascontiguousarray(at), thermal(solids, temperature, nodes, first + cells),
             (which[first + cells], compliance, stiffness),
             (shapes, np.ascontiguousarray(derivatives[0]), rule[1] / rule[1].sum()), mesh.axisymmetric,
         )  # fmt: skip
     return result
 
 
-def _thermal(solids: Solids, temperature: TemperatureChange, nodes: Ids, cells: NDArray[np.int64]) -> Array | None:
+def thermal(solids: Solids, temperature: TemperatureChange, nodes: Ids, cells: NDArray[np.int64]) -> Array | None:
     """Strain by nodal temperatures at the cells' nodes; what a body has all over has no gradient."""
     if temperature.nodes is None:
         return None
@@ -57,7 +57,7 @@ def _thermal(solids: Solids, temperature: TemperatureChange, nodes: Ids, cells: 
     return np.asarray(expansion[solids.body_of[cells]][:, None] * temperature.nodes[nodes])
 
 
-def _stiffness(compliance: Array, plane: str | None, dim: int) -> Array:
+def stiffnesses(compliance: Array, plane: str | None, dim: int) -> Array:
     """(n, c, c) of (n, 6, 6): of bodies in plane stress without what resists across."""
     if dim == 3:
         return np.asarray(np.linalg.pinv(compliance, hermitian=True))

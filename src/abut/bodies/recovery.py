@@ -3,26 +3,27 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from abut._core import shape_functions, stress_errors
+from abut.bodies.compliance import compliances
 from abut.bodies.evaluation import History
-from abut.bodies.patch_fits import Equations, Fits, Sampling, carried, fitted, no_equations, spread, used
-from abut.bodies.solids import UNHEATED, Array, Group, Solids, TemperatureChange
+from abut.bodies.interpolated_samples import straight, without_interpolation
+from abut.bodies.patch_fits import Equations, Fits, Sampling, carried, fitted, no_equations, used
+from abut.bodies.solids import UNHEATED, Array, Solids, TemperatureChange
 from abut.bodies.stress import PointStress, point_stress
 from abut.cells import CELLS
-from abut.materials.material import Material, linear
-from abut.materials.places import Places, is_local, placed
 from abut.mesh.patches import Patches
 from abut.mesh.quadrature import error_rule
 
 
 def recovered(
-    solids: Solids, points: Array, stress: PointStress, known: Equations | None = None, plain: Fits | None = None
-) -> Array:
+    solids: Solids, points: Array, stress: PointStress, known: Equations | None = None, plain: Fits | None = None,
+    interpolated: TemperatureChange | None = None,
+) -> Array:  # fmt: skip
     """Stresses xx yy zz xy yz zx of each body at its points, (n_values, 6) in the order of ``solids.patches``, fitted to
     those at the integration points. points: (n_points, dim) where they are now; plain: fits of ``stress`` without what is
-    known, where they have been made."""
+    known, where they have been made; interpolated: the change of temperature, where stresses are those of displacements that
+    cells interpolate, whose samples then are mended, theory (Z13)."""
     of = solids.patches
     if known is None:
         known = no_equations(of, points.shape[1])
@@ -30,6 +31,8 @@ def recovered(
         fits = fitted(plain.sampling, stress, known, plain)
     else:
         fits = fitted(Sampling.of(solids, points, known), stress, known)
+    if interpolated is not None and straight(solids).any():
+        fits = fitted(fits.sampling, without_interpolation(fits, interpolated), known)
     result = fits.at(points[of.point], of.blend)
     value = np.zeros(len(points), dtype=np.int64)
     value[of.point] = np.arange(len(of.point))
@@ -92,40 +95,6 @@ def energies(solids: Solids, points: Array, stress: PointStress, values: Array) 
         at = np.ascontiguousarray(carried(group.kind, group.rule, rule[0]) @ at).reshape(-1, 6)
         result[group.cells] = stress_errors(
             points, group.nodes, (shapes, derivatives, rule[1]), solids.mesh.axisymmetric, at,
-            (_own(solids, of, group), values), (compliance, which[group.cells]),
+            (of.of_cells(group.cells, solids.mesh.starts), values), (compliance, which[group.cells]),
         )  # fmt: skip
     return result
-
-
-def _own(solids: Solids, of: Patches, group: Group) -> NDArray[np.int32]:
-    block = int(np.searchsorted(solids.mesh.starts, group.cells[0], side="right")) - 1
-    return np.ascontiguousarray(of.nodes[block][group.cells - solids.mesh.starts[block]])
-
-
-def compliances(solids: Solids) -> tuple[Array, NDArray[np.int32]]:
-    """(k, 6, 6) at rest, and which each cell has, (n_cells,): that of its body, or one in its own middle."""
-    which = solids.body_of.copy()
-    found = []
-    for number, material in enumerate(solids.materials.values()):
-        if not is_local(material):
-            found.append(_compliance(material)[None])
-            which[solids.body_of == number] = sum(map(len, found)) - 1
-            continue
-        cells = np.flatnonzero(solids.body_of == number)
-        centre = spread(solids, solids.points)[cells, 0]
-        here = placed(material, Places(centre, np.zeros(len(cells))))
-        tangent = here.evaluate(np.zeros((len(cells), 6)), here.initial(len(cells)))[1]
-        which[cells] = sum(map(len, found)) + np.arange(len(cells))
-        found.append(np.asarray(np.linalg.pinv(tangent, hermitian=True), dtype=float))
-    return np.concatenate(found), which
-
-
-def _compliance(material: Material) -> Array:
-    """(6, 6), at rest."""
-    rest = linear(material)
-    if rest is not None:
-        result = np.diag([1.0] * 3 + [2.0] * 3) * (1.0 + rest.poisson)
-        result[:3, :3] -= rest.poisson
-        return np.asarray(result / rest.young)
-    tangent = material.evaluate(np.zeros((1, 6)), material.initial(1))[1][0]
-    return np.ascontiguousarray(np.linalg.pinv(tangent, hermitian=True))

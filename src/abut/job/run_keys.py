@@ -38,7 +38,8 @@ RUN: dict[str, dict[str, str]] = {
         "steps": "steps with result files: all, last, n for every n-th, or a list of numbers; the last one always has them. "
         "Tables, summary and report have every step",
         "fields": "what result files hold: fields of the bodies, and contact for the files of contact surfaces; "
-        "principal-stress is left out unless it is named",
+        "principal-stress and max-shear (half the difference of the largest and the smallest) are left out unless they are "
+        "named",
         "formats": "vtu for ParaView; frd for CalculiX GraphiX: fields.frd, written at the end of the run",
         "compression": "fast, or small: VTU files up to two fifths smaller, which take longer to write; the same numbers",
     },
@@ -49,7 +50,7 @@ RUN: dict[str, dict[str, str]] = {
         "on": "name of the node set, surface or body whose nodes are read",
         "points": "how many points on the line, both ends among them; left out: 50",
         "of": "what to read; left out: all there is, plastic strains only where a body may yield, pressure and gap only on "
-        "surfaces of contacts, principal stresses and reactions not at all",
+        "surfaces of contacts, principal stresses, largest shear (max-shear) and reactions not at all",
         "contact": "name of the contact whose pressure and gap are read; left out: the one that the probe lies on",
         "body": "name of the body that is read where points lie on several; left out: the first in the mesh",
         "steps": "steps in its table: all, last, n for every n-th, or a list of numbers; the last one always is",

@@ -12,6 +12,13 @@ def von_mises(stress: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.sqrt(0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3.0 * (xy**2 + yz**2 + zx**2))
 
 
+def max_shear(stress: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Largest shear stress of (n, 6) stresses xx yy zz xy yz zx, (n,): half the difference of the largest and the smallest
+    principal stress, half of Tresca's equivalent stress."""
+    roots = principal(stress)
+    return np.asarray(0.5 * (roots[:, 0] - roots[:, 2]))
+
+
 def principal(stress: NDArray[np.float64]) -> NDArray[np.float64]:
     """Principal stresses of (n, 6) stresses xx yy zz xy yz zx, (n, 3), the largest first: the roots of the characteristic
     cubic as cosines (Smith 1961), to about 1e-8 of the largest where two of them nearly agree."""

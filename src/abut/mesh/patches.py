@@ -46,6 +46,11 @@ class Patches:
         """Whether any point belongs to several bodies."""
         return len(np.unique(self.point)) < len(self.point)
 
+    def of_cells(self, cells: NDArray[np.int64], starts: NDArray[np.int64]) -> NDArray[np.int32]:
+        """Values at the nodes of cells (n,) of one block, (n, n_nodes); starts: of the mesh."""
+        block = int(np.searchsorted(starts, cells[0], side="right")) - 1
+        return np.ascontiguousarray(self.nodes[block][cells - starts[block]])
+
 
 def patches(mesh: Mesh, body_of: NDArray[np.int32]) -> Patches:
     """Of the bodies of a mesh; body_of: (n_cells,) number of each cell's body, -1 for cells that are left out."""

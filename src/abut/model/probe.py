@@ -12,8 +12,8 @@ from abut.mesh.mesh import Mesh
 from abut.model.step_choice import StepChoice, check_steps
 
 YIELDED = ("plastic-strain", "equivalent-plastic-strain")  # where a body may yield
-PRINCIPAL, REACTION = "principal-stress", "reaction"
-NAMED_ONLY = (PRINCIPAL, REACTION)  # read where they are asked for by name
+PRINCIPAL, MAX_SHEAR, REACTION = "principal-stress", "max-shear", "reaction"
+NAMED_ONLY = (PRINCIPAL, MAX_SHEAR, REACTION)  # read where they are asked for by name
 IN_BODIES = ("displacement", "stress", "von-mises", *NAMED_ONLY, *YIELDED)
 ON_CONTACTS = ("pressure", "gap")
 QUANTITIES = (*IN_BODIES, *ON_CONTACTS)
@@ -40,10 +40,11 @@ class Probe:
     points : int, optional
         Of a line: in equal distances, both ends among them; 50 where left out.
     of : sequence of str, optional
-        "displacement", "stress", "von-mises", "principal-stress", "reaction", "plastic-strain",
-        "equivalent-plastic-strain", "pressure", "gap"; left out: all that exist there, plastic strains only where a body
-        of the model may yield, pressure and gap only where the place lies on a surface of a contact, principal stresses
-        and reactions not at all. "reaction", with ``on``: the force of supports and links on each node.
+        "displacement", "stress", "von-mises", "principal-stress", "max-shear" (half the difference of the largest and the
+        smallest principal stress), "reaction", "plastic-strain", "equivalent-plastic-strain", "pressure", "gap"; left out:
+        all that exist there, plastic strains only where a body of the model may yield, pressure and gap only where the
+        place lies on a surface of a contact, principal stresses, largest shear and reactions not at all.
+        "reaction", with ``on``: the force of supports and links on each node.
     contact : str, optional
         Whose pressure and gap, where more than one is there.
     body : str, optional

@@ -9,7 +9,7 @@ import numpy as np
 
 from abut import checks
 from abut.errors import InputError
-from abut.materials.invariants import principal
+from abut.materials.invariants import max_shear, principal
 from abut.model.step_choice import StepChoice, check_steps, chosen
 from abut.solution.grids import Grid
 from abut.types import Array
@@ -19,6 +19,7 @@ ARRAYS = {  # what a file may hold of the bodies, by its key
     "stress": "stress",
     "von-mises": "von_mises",
     "principal-stress": "principal_stress",
+    "max-shear": "max_shear",
     "stress-error": "stress_error",
 }
 MATERIAL = "material"  # what materials remember, such as plastic strains
@@ -109,6 +110,8 @@ class Output:
         known = grid.point_data
         if "principal-stress" in self.fields:
             known = {**known, "principal_stress": principal(known["stress"])}
+        if "max-shear" in self.fields:
+            known = {**known, "max_shear": max_shear(known["stress"])}
         left_out = {array for name, array in ARRAYS.items() if name not in self.fields}
         if MATERIAL not in self.fields:
             left_out |= known.keys() - set(ARRAYS.values())

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.materials.invariants import principal, von_mises
-from abut.model.probe import PRINCIPAL, REACTION, YIELDED
+from abut.materials.invariants import max_shear, principal, von_mises
+from abut.model.probe import MAX_SHEAR, PRINCIPAL, REACTION, YIELDED
 from abut.probing.place import OnSurface, Place
 from abut.probing.sides import CONTACTOR
 from abut.solution import ContactResult, ProbeResult, Step
@@ -26,6 +26,8 @@ def read(place: Place, step: Step) -> ProbeResult:
         }
         if PRINCIPAL in place.of:
             every[PRINCIPAL] = principal(stress)
+        if MAX_SHEAR in place.of:
+            every[MAX_SHEAR] = max_shear(stress)
         if REACTION in place.of and step.nodal_reaction is not None:
             every[REACTION] = np.asarray(place.weights @ step.nodal_reaction)
         for name in YIELDED:

@@ -13,7 +13,7 @@ PARTS = {"displacement": "xyz", "reaction": "xyz", "principal_stress": "123"}  #
 
 def columns(result: ProbeResult) -> dict[str, NDArray[np.float64]]:
     """Each component by its name, (n,): displacement_x ..., stress_xx ... stress_zx, von_mises, principal_stress_1 ... 3,
-    reaction_x ..., plastic_strain_xx ..., equivalent_plastic_strain, pressure, gap."""
+    max_shear, reaction_x ..., plastic_strain_xx ..., equivalent_plastic_strain, pressure, gap."""
     table: dict[str, NDArray[np.float64]] = {}
     for name, values in result.values.items():
         if values.ndim == 1:

@@ -18,7 +18,7 @@ UNITS["reaction"] = "force"
 UNITS |= dict.fromkeys(("plastic_strain", "equivalent_plastic_strain", "equivalent plastic strain"), "1")
 CHARTS = (  # quantities of one chart: its title, its quantities
     ("displacement", ("displacement",)),
-    ("stress", ("stress", "von_mises", "principal_stress")),
+    ("stress", ("stress", "von_mises", "principal_stress", "max_shear")),
     ("reaction", ("reaction",)),
     ("plastic strain", ("plastic_strain", "equivalent_plastic_strain")),
     ("pressure", ("pressure", "gap")),

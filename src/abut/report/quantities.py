@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.materials.invariants import principal, von_mises
+from abut.materials.invariants import max_shear, principal, von_mises
 from abut.materials.plastic import EQUIVALENT
 from abut.mesh.mesh import Mesh
 from abut.solution import ContactResult, Solution, Step
@@ -16,7 +16,7 @@ from abut.solution.grids import cell_error, largest_pressure
 
 Values = NDArray[np.float64]
 OF_STRESS = ("von Mises", "largest principal stress", "smallest principal stress")
-SIZE, ERROR, PLASTIC = "displacement", "stress error", "plastic strain"
+SIZE, ERROR, PLASTIC, SHEAR = "displacement", "stress error", "plastic strain", "largest shear stress"
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ def extremes(solution: Solution) -> dict[str, Extremes]:
     found: dict[str, list[list[tuple[float, float, int, int]]]] = {}
     for step in solution.steps:
         fields = {SIZE: np.linalg.norm(step.displacement, axis=1), **of_stress(step.stress)}
-        fields |= of_nodes(mesh, step)
+        fields |= {SHEAR: max_shear(step.stress), **of_nodes(mesh, step)}
         for name, values in fields.items():
             found.setdefault(name, []).append([_ends(values, own) for own in (nodes if name == SIZE else solid)])
     return {name: _extremes(rows) for name, rows in found.items()}
@@ -128,7 +128,7 @@ def peak_steps(solution: Solution, of_bodies: Mapping[str, Extremes]) -> list[in
     """Steps that must be shown: the last, and those in which a quantity has its largest value (index into the steps)."""
     chosen = {len(solution.steps) - 1}
     for name, own in of_bodies.items():
-        if name != ERROR and np.isfinite(own.high).any():
+        if name not in (ERROR, SHEAR) and np.isfinite(own.high).any():
             chosen.add(int(np.unravel_index(np.nanargmax(own.high), own.high.shape)[0]))
     for i in range(len(solution.contacts)):
         pressures = [step.contacts[i].max_pressure for step in solution.steps]
@@ -147,6 +147,7 @@ def largest_by_body(solution: Solution, of_bodies: Mapping[str, Extremes]) -> tu
         ("largest von Mises stress", "von Mises", True),
         ("largest principal stress", OF_STRESS[1], True),
         ("smallest principal stress", OF_STRESS[2], False),
+        ("largest shear stress", SHEAR, True),
         ("largest displacement", SIZE, True),
     ]
     head, rows = ["body", *(title for title, _, _ in columns)], []

@@ -58,8 +58,8 @@ class ProbeResult:
     points: (n, dim) coordinates in the undeformed mesh, length; distance: (n,) along the line from its start, length, and
     nodes: (n,) numbers of the mesh's points, each None where the probe is no line or no set.
     values: by name displacement and reaction (n, dim), stress (n, 6) xx yy zz xy yz zx, von_mises (n,), principal_stress
-    (n, 3), plastic_strain (n, 6), equivalent_plastic_strain, pressure, gap (n,), as far as asked for; NaN where a quantity
-    does not exist at a point.
+    (n, 3), max_shear (n,), plastic_strain (n, 6), equivalent_plastic_strain, pressure, gap (n,), as far as asked for; NaN
+    where a quantity does not exist at a point.
     """
 
     name: str
