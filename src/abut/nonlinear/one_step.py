@@ -50,7 +50,7 @@ class Setting:
         increment = Increment(self.number, before.largest, self.settings)
         step = Step(problem, begin, frame, self.solver, increment, self.limit, self.observe, careful=careful, drag=drag)
         found = solve_finite(step, guess, time)
-        spreads = self.settings.steps.spreads if frame.wet else 0
+        spreads = self.settings.steps.tries if frame.wet else 0
         for done in range(AGAIN + spreads):
             frame = step.frame
             if found.converged:
@@ -156,11 +156,11 @@ def stabilised(setting: Setting, before: State, time: float) -> Led:
     settings, asked = setting.settings, setting.settings.drag
     problem, setting = setting.problem, replace(setting, limit=min(2 * settings.steps.easy, setting.limit))
     size, most = scale(problem.again(before, before)), 0.0
-    begin = asked.first if not drag_of(before).any() else asked.first * asked.slow
+    begin = asked.slight if not drag_of(before).any() else asked.slight**2
     strength = Strength(begin, settings, asked.change)
     here, parts, spent = before, list[Attempt](), tuple[Iteration, ...]()
     part, why = None, "bodies do not come to rest"
-    for _ in range(asked.parts):
+    for _ in range(settings.steps.tries):
         drag = Drag(strength.share * size, here.unknowns)
         part = setting.attempted(here, here if parts else None, time, drag=drag)
         spent += part.iterations
@@ -184,7 +184,7 @@ def stabilised(setting: Setting, before: State, time: float) -> Led:
             return Led((*parts[:-1], replace(parts[-1], whole=True)))
         least = strength.share <= settings.newton.balanced
         if (
-            not loose and left < asked.slow and (left < 10.0 * asked.slow * most or least)
+            not loose and left < asked.slight and (left < 10.0 * asked.slight * most or least)
         ):  # at the outset bodies are slow, too
             last = setting.attempted(here, here, time)
             spent += last.iterations

@@ -42,9 +42,6 @@ class NewtonSettings:
     bent: float = _of(
         0.2, "facets", "gap up to which a point that presses stays closed for an iteration", "test_opening.py",
     )  # fmt: skip
-    soft: float = _of(
-        1e-6, "of h / E", "how far repeated gaps yield in an iteration", "test_deck_large.py::test_level_faces",
-    )  # fmt: skip
     again: int = _of(
         2, "closings in a step", "after which a point may take the place of another", "test_exchange.py",
     )  # fmt: skip
@@ -56,8 +53,10 @@ class AccuracySettings:
 
     rough: float = _of(1e-2, "of the residual", "left at most", "test_forcing.py")
     fine: float = _of(1e-5, "of the residual", "below which it need not fall in one solution", "test_forcing.py")
-    share: float = _of(0.5, "of the last reduction squared", "left next (Eisenstat, Walker 1996)", "test_forcing.py")
-    spare: float = _of(0.3, "of what may be left", "aimed at in the last solution", "test_forcing.py")
+    share: float = _of(
+        0.5, "of the last reduction squared; of what may be left", "left next (Eisenstat, Walker 1996); in the last one",
+        "test_forcing.py",
+    )  # fmt: skip
     stride: float = _of(1e-4, "of the residual", "at most in one solve while a set may change", "test_multigrid.py")
     told: float = _of(0.2, "of forces and pressures", "left in a state that tells the next set", "test_multigrid.py")
 
@@ -67,7 +66,10 @@ class StepSettings:
     """Load steps that the program finds."""
 
     first: float = _of(0.1, "of the way to the next goal", "the first step", "test_pace.py")
-    easy: int = _of(6, "iterations", "up to which the next step is longer; shorter above twice as many", "test_pace.py")
+    easy: int = _of(
+        6, "iterations", "up to which the next step is longer; shorter above twice as many, halved above four times",
+        "test_pace.py, test_large_sliding.py",
+    )  # fmt: skip
     growth: float = _of(1.5, "step over the last one", "after an easy step", "test_pace.py")
     shrink: float = _of(0.7, "step over the last one", "after a hard step", "test_pace.py")
     missed: float = _of(
@@ -79,12 +81,12 @@ class StepSettings:
     smallest: float = _of(
         1.0 / 4096.0, "of the way to the next goal", "step; its root where the user gives steps", "test_pace.py",
     )  # fmt: skip
-    most: int = _of(25, "iterations", "in a step, above which it is halved", "test_large_sliding.py")
     careful: int = _of(
         2, "cuts in a row", "from which on a line search shortens iterations", "test_stabilised.py",
     )  # fmt: skip
-    spreads: int = _of(
-        60, "solutions of a step", "after each of which a fluid may get on in a contact", "test_penetration.py",
+    tries: int = _of(
+        60, "solutions of a step", "while a fluid gets on in a contact, or in parts under a drag",
+        "test_penetration.py, test_large_sliding.py::test_too_much_ends_with_words",
     )  # fmt: skip
 
 
@@ -110,11 +112,12 @@ class HoldingSettings:
 class DragSettings:
     """A drag that leads a step, theory (G23). Relative forces are over the largest of the step."""
 
-    first: float = _of(1e-3, "of the stiffness", "drag to begin with", "test_stabilised.py")
+    slight: float = _of(
+        1e-3, "of the stiffness; of the largest force", "to begin with; at which bodies are all but at rest",
+        "test_stabilised.py",
+    )  # fmt: skip
     greatest: float = _of(1e2, "of the stiffness", "drag at most", "test_stabilised.py")
     change: float = _of(10.0, "drag over the last one", "at most from part to part", "test_stabilised.py")
-    parts: int = _of(60, "parts", "of a step, tried", "test_large_sliding.py::test_too_much_ends_with_words")
-    slow: float = _of(1e-3, "of the largest force", "drag at which bodies are all but at rest", "test_stabilised.py")
 
 
 @dataclass(frozen=True)
