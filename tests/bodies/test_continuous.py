@@ -83,7 +83,8 @@ def test_tangent(law: object) -> None:
     after, before = respond(body, u + step * v), respond(body, u - step * v)
     change = (after.force - before.force) / (2 * step)
     np.testing.assert_allclose(here.tangent @ v.ravel(), change, rtol=0, atol=1e-6 * abs(change).max())
-    assert abs(here.tangent - here.tangent.T).max() < 1e-11 * abs(here.tangent).max()
+    matrix = here.tangent.tocsr()
+    assert abs(matrix - matrix.T).max() < 1e-11 * abs(matrix).max()
     assert is_symmetric(body)
     if not isinstance(law, Plastic):
         work = (after.energy.sum() - before.energy.sum()) / (2 * step)
@@ -97,7 +98,7 @@ def test_finite_begins_as_small(law: object) -> None:
     small = solids(mesh, law, "small")
     matrix = stiffness(small)
     if not isinstance(law, LinearElastic):
-        rest = respond(solids(mesh, law, "finite"), np.zeros(mesh.points.shape)).tangent
+        rest = respond(solids(mesh, law, "finite"), np.zeros(mesh.points.shape)).tangent.tocsr()
         assert abs(rest - matrix).max() < 1e-12 * abs(matrix).max()
     u = np.random.default_rng(3).normal(size=mesh.points.shape)
     np.testing.assert_allclose(internal_force(small, u), matrix @ u.ravel(), atol=1e-12 * abs(matrix).max())
@@ -169,7 +170,7 @@ def test_foreseen_pressures(guessed: bool) -> None:
     step = 1e-4
     curved = (of.at(after + step * b).rows - of.at(after - step * b).rows) @ a.ravel() / (2 * step)
     constant = bulk - 2.0 / 3.0 * 0.7  # of the law that acts on volumes; what is left has 2/3 of the shear modulus
-    assert a.ravel() @ change @ b.ravel() == pytest.approx(-constant * (of.volume * unforeseen) @ curved, rel=1e-6)
+    assert a.ravel() @ (change @ b.ravel()) == pytest.approx(-constant * (of.volume * unforeseen) @ curved, rel=1e-6)
 
 
 def test_iterations_do_not_grow_with_the_bulk_modulus() -> None:

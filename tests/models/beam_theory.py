@@ -2,31 +2,57 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import quad
 from scipy.optimize import fsolve
 
 
-def leaf_forces(lengths: list[float], stiffness: float, load: float) -> NDArray[np.float64]:
-    """Forces between leaves clamped together, each touched by the next one's end, with a load at the end of the longest:
-    both bend by as much there. stiffness: E I of each."""
+@dataclass(frozen=True)
+class Leaves:
+    """Leaves clamped together, each touched by the next one's end, with a load across at the end of the longest.
 
-    def moved(x: float, at: float) -> float:  # of a cantilever at x by a force of 1
+    forces: (n - 1,) between them; moved: way of the load's point, in its direction."""
+
+    forces: NDArray[np.float64]
+    moved: float
+
+
+def leaf_forces(
+    lengths: list[float], stiffness: float, load: float, mu: float = 0.0, thick: float = 0.0
+) -> NDArray[np.float64]:
+    """Forces of ``bent_leaves``."""
+    return bent_leaves(lengths, stiffness, load, mu, thick).forces
+
+
+def bent_leaves(lengths: list[float], stiffness: float, load: float, mu: float = 0.0, thick: float = 0.0) -> Leaves:
+    """Where leaves touch both bend by as much. All slip, the upper one's face inwards, the lower one's outwards, so that
+    friction has an arm of half the thickness about either's middle, and bends both back. stiffness: E I of each."""
+
+    def force(x: float, at: float) -> float:  # way of a cantilever at x by a force of 1
         near, far = min(x, at), max(x, at)
         return near**2 * (3.0 * far - near) / (6.0 * stiffness)
 
+    def rubbed(x: float, at: float) -> float:  # the same by the moment of that force's friction
+        return 0.5 * mu * thick * min(x, at) * (x - 0.5 * min(x, at)) / stiffness
+
     count = len(lengths) - 1
     matrix, right = np.zeros((count, count)), np.zeros(count)
-    for k, x in enumerate(lengths[1:]):
-        matrix[k, k] = 2.0 * moved(x, x)
+    for k, x in enumerate(
+        lengths[1:]
+    ):  # the way of leaf k there, less that of the next one; both are rubbed alike at x
+        matrix[k, k] = -2.0 * force(x, x)
         if k == 0:
-            right[k] = load * moved(x, lengths[0])
+            right[k] = -load * force(x, lengths[0])
         else:
-            matrix[k, k - 1] = -moved(x, lengths[k])
+            matrix[k, k - 1] = force(x, lengths[k]) - rubbed(x, lengths[k])
         if k < count - 1:
-            matrix[k, k + 1] = -moved(x, lengths[k + 2])
-    return np.asarray(np.linalg.solve(matrix, right))
+            matrix[k, k + 1] = force(x, lengths[k + 2]) + rubbed(x, lengths[k + 2])
+    forces = np.linalg.solve(matrix, right)
+    end, first = lengths[0], lengths[1]
+    return Leaves(forces, load * force(end, end) - float(forces[0]) * (force(end, first) + rubbed(end, first)))
 
 
 def clip_force(way: float, stiffness: float, thick: float, pipe: float, tight: float, arm: float, mu: float) -> float:

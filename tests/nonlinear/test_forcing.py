@@ -10,7 +10,7 @@ from abut.nonlinear.settings import DEFAULT
 
 BALANCED = DEFAULT.newton.balanced
 ASKED = DEFAULT.accuracy
-ROUGH, FINE, SHARE = ASKED.rough, ASKED.fine, ASKED.share
+ROUGH, FINE, SHARE, SPARE = ASKED.rough, ASKED.fine, ASKED.share, ASKED.spare
 
 
 def test_it_follows_the_square_of_the_last_reduction() -> None:
@@ -24,7 +24,7 @@ def test_no_finer_than_the_last_iteration_needs() -> None:
     """What is left then is a part of what counts as balanced; never finer than is worth anything, never rougher than at
     first."""
     assert forcing(1e-3, 1.0, DEFAULT) == FINE
-    assert forcing(1e-6, 1e-2, DEFAULT) == pytest.approx(SHARE * BALANCED / 1e-6)
-    assert forcing(2e-6, 1e-2, DEFAULT) * 2e-6 == pytest.approx(SHARE * BALANCED)
+    assert forcing(1e-6, 1e-2, DEFAULT) == pytest.approx(SPARE * BALANCED / 1e-6)
+    assert forcing(2e-6, 1e-2, DEFAULT) * 2e-6 == pytest.approx(SPARE * BALANCED)
     assert forcing(1e-12, 1e-2, DEFAULT) == ROUGH
     assert forcing(0.0, 1e-2, DEFAULT) == ROUGH

@@ -10,8 +10,8 @@ from abut.nonlinear.pace import Pace, given_pace, pace_of
 from abut.nonlinear.settings import DEFAULT
 
 STEPS = DEFAULT.steps
-FIRST, EASY, GROWTH, SMALLEST = STEPS.first, STEPS.easy, STEPS.growth, STEPS.smallest
-HARD, SHRINK = 2 * EASY, STEPS.shrink
+FIRST, EASY, GROWTH, SMALLEST = STEPS.first, STEPS.easy, 1.0 / STEPS.shorter, STEPS.smallest
+HARD, SHRINK = 2 * EASY, STEPS.shorter
 
 
 def ends(pace: Pace, iterations: int) -> list[float]:
@@ -25,7 +25,7 @@ def ends(pace: Pace, iterations: int) -> list[float]:
 def test_easy_steps_grow_and_end_at_the_goal() -> None:
     found = ends(Pace([1.0]), 3)
     assert found[0] == 0.1
-    assert abs(found[1] - 0.25) < 1e-12
+    assert abs(found[1] - FIRST * (1.0 + GROWTH)) < 1e-12
     assert found[-1] == 1.0
     lengths = [b - a for a, b in zip([0.0, *found], found)]
     assert min(lengths) >= 0.1 - 1e-12  # the way left is shared out: no crumb at the end
@@ -190,7 +190,7 @@ def test_steps_in_which_friction_lands_are_followed_by_shorter_ones() -> None:
     for pace, share in ((easy, 0.001), (hard, 0.02), (much, 1.0), (given, 1.0)):
         pace.take(3, share)
     lengths = [pace.end - pace.time for pace in (easy, hard, much, given)]
-    assert lengths == pytest.approx([0.15, 0.1 * 0.5**0.5, 0.05, 0.1])
+    assert lengths == pytest.approx([FIRST * GROWTH, 0.1 * 0.5**0.5, 0.05, 0.1])
 
 
 def test_given_steps_are_taken_in_parts_and_grow_again() -> None:

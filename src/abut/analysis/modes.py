@@ -14,6 +14,7 @@ from abut.modes.cyclic import cyclic_frequencies, sides
 from abut.modes.frequencies import frequencies
 from abut.modes.held import Held, held
 from abut.modes.sliding import sliding
+from abut.modes.spinning import spin_softening
 from abut.nonlinear.attempt import Attempt
 from abut.problem.assembly import Assembled
 from abut.problem.problem import ContactProblem
@@ -54,6 +55,13 @@ def modes(assembled: Assembled, before: State, attempt: Attempt) -> tuple[ModesR
     near = problem.constraints.near(state.unknowns, system.factors)
     there = held(own, system, state)
     stressed = _stressed(assembled, state) if problem.model.small_strains else None
+    spins = spin_softening(problem.model, state.time)
+
+    def added(wanted: Frequencies) -> Sparse | None:
+        """What the state adds to the stiffness of a linear body, or to the tangent of one at large displacements."""
+        if stressed is None:
+            return spins
+        return (stressed + spins).tocsr() if wanted.stiffening else None
 
     def found(wanted: Frequencies | Buckling) -> tuple[ModesResult, ...]:
         if isinstance(wanted, Buckling):
@@ -61,12 +69,11 @@ def modes(assembled: Assembled, before: State, attempt: Attempt) -> tuple[ModesR
             return (buckling(problem.model, near, there, stressed, wanted),)
         around = tuple(diameter for diameter in wanted.diameters if diameter)
         alike = (one(wanted),) if len(around) < len(wanted.diameters) else ()
-        return alike + (_around(own, before, state, stressed, wanted, around) if around else ())
+        return alike + (_around(own, before, state, added(wanted), wanted, around) if around else ())
 
     def one(wanted: Frequencies) -> ModesResult:
-        tight = there
-        if stressed is not None and wanted.stiffening:
-            tight = _stiffened(there, near.reduce(stressed))
+        more = added(wanted)
+        tight = there if more is None else _stiffened(there, near.reduce(more))
         if wanted.complex:
             return complex_frequencies(problem.model, near, tight, sliding(system, state, there), wanted)
         return frequencies(problem.model, near, tight, wanted)
@@ -75,7 +82,7 @@ def modes(assembled: Assembled, before: State, attempt: Attempt) -> tuple[ModesR
 
 
 def _around(
-    problem: ContactProblem, before: State, state: State, stressed: Sparse | None, wanted: Frequencies,
+    problem: ContactProblem, before: State, state: State, added: Sparse | None, wanted: Frequencies,
     diameters: Sequence[int],
 ) -> tuple[ModesResult, ...]:  # fmt: skip
     """Frequencies with nodal diameters."""
@@ -83,13 +90,13 @@ def _around(
     wide = apart.problem(problem)
     there = apart.state(state)
     tight = held(wide, wide.again(apart.state(before), there), there)
-    if stressed is not None and wanted.stiffening:
-        tight = _stiffened(tight, apart.constraints.reduce(stressed))
+    if added is not None:
+        tight = _stiffened(tight, apart.constraints.reduce(added))
     return cyclic_frequencies(problem.model, apart, tight, wanted, diameters)
 
 
-def _stiffened(there: Held, by_stress: Sparse) -> Held:
-    return replace(there, stiffness=(there.stiffness + by_stress).tocsr()) if by_stress.nnz else there
+def _stiffened(there: Held, added: Sparse) -> Held:
+    return replace(there, stiffness=(there.stiffness + added).tocsr()) if added.nnz else there
 
 
 def _stressed(assembled: Assembled, state: State) -> Sparse:

@@ -4,6 +4,7 @@ thickness in 2D, all round if axisymmetric."""
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import cast
 
 import numpy as np
 import scipy.sparse as sp
@@ -13,6 +14,7 @@ from abut.bodies.continuous import pressure_response, pressure_stiffness
 from abut.bodies.evaluation import History
 from abut.bodies.integrate import integrate
 from abut.bodies.solids import UNHEATED, Array, Solids, TemperatureChange
+from abut.bordered import eliminated
 from abut.materials.kernel import Since, Wanted
 from abut.materials.material import linear, symmetric
 from abut.types import Operator, Sparse
@@ -20,10 +22,10 @@ from abut.types import Operator, Sparse
 
 @dataclass(frozen=True)
 class Response:
-    """force: (dim n_points,) of the stresses; tangent: its derivative, (dim n_points, dim n_points) CSR with sorted rows, or
-    None; history: the new one; energy: (n_cells,) elastic energy of each cell, per unit thickness in 2D, all round if
-    axisymmetric: under finite strains, and of laws in the compiled core that have a history; not a number of other bodies
-    under finite strains."""
+    """force: (dim n_points,) of the stresses; tangent: its derivative, (dim n_points, dim n_points) CSR with sorted rows, a
+    ``Bordered`` of continuous pressures where there are any, or None; history: the new one; energy: (n_cells,) elastic
+    energy of each cell, per unit thickness in 2D, all round if axisymmetric: under finite strains, and of laws in the
+    compiled core that have a history; not a number of other bodies under finite strains."""
 
     force: Array
     tangent: Operator
@@ -34,6 +36,11 @@ class Response:
 def stiffness(solids: Solids) -> Sparse:
     """Stiffness matrix of all bodies at rest, theory (F4), (dim n_points, dim n_points) CSR with sorted rows; for constant
     materials the tangent everywhere. Finite strains begin with the same one."""
+    return cast(Sparse, eliminated(stiffness_at_rest(solids)))
+
+
+def stiffness_at_rest(solids: Solids) -> Operator:
+    """The same, with continuous pressures as its border where there are any."""
     if solids.kinematics == "finite":
         rest = {body: linear(material) or material for body, material in solids.materials.items()}
         solids = replace(solids, kinematics="small", materials=rest)
@@ -42,7 +49,7 @@ def stiffness(solids: Solids) -> Sparse:
         wanted = Wanted(tangent=(*solids.pattern, values))
         integrate(solids, group, group.rule, None, UNHEATED, None, wanted)
     matrix, more = _matrix_of(solids, values), pressure_stiffness(solids)
-    return matrix if more is None else (matrix + more).tocsr()
+    return matrix if more is None else more + matrix
 
 
 def internal_force(
@@ -56,7 +63,7 @@ def tangent(
     solids: Solids, displacement: Array, temperature: TemperatureChange = UNHEATED, history: History | None = None
 ) -> Sparse:
     """Derivative of ``internal_force`` by the displacement, CSR as ``stiffness``."""
-    return respond(solids, displacement, temperature, history).tangent
+    return cast(Sparse, eliminated(respond(solids, displacement, temperature, history).tangent))
 
 
 def respond(
@@ -83,11 +90,12 @@ def respond(
         energy[group.cells] = of_cells
         after.setdefault(group.body, []).extend(new)
     history = {body: np.concatenate(parts) for body, parts in after.items() if body}
-    total, slope = force.ravel(), None if values is None else _matrix_of(solids, values)
+    total = force.ravel()
+    slope: Operator = None if values is None else _matrix_of(solids, values)
     more = pressure_response(solids, moved, temperature, tangent, since)
     if more is not None:
         total, energy = total + more.force, energy + more.energy
-        slope = None if slope is None or more.tangent is None else (slope + more.tangent).tocsr()
+        slope = None if slope is None or more.tangent is None else more.tangent + slope
     return Response(total, slope, history, energy)
 
 

@@ -10,8 +10,8 @@ import numpy as np
 from abut.bodies.corner_pressures import KIND, CornerPressures, Turned, Volumes, linear_functions
 from abut.bodies.inverted import Inverted
 from abut.bodies.solids import Array, Solids, TemperatureChange
+from abut.bordered import Bordered
 from abut.materials.kernel import Since
-from abut.types import Sparse
 
 
 @dataclass(frozen=True)
@@ -20,11 +20,11 @@ class PressureResponse:
     ``abut.bodies.assemble.Response``."""
 
     force: Array
-    tangent: Sparse | None
+    tangent: Bordered | None
     energy: Array
 
 
-def pressure_stiffness(solids: Solids) -> Sparse | None:
+def pressure_stiffness(solids: Solids) -> Bordered | None:
     """Of bodies at rest, under small strains; None without such pressures."""
     of = solids.pressures
     if of is None:
@@ -45,10 +45,11 @@ def pressure_response(
     force = np.asarray(now.rows.T @ (of.volume * pressure))
     slope = None
     if tangent:
-        slope = of.stiffness(now.rows, bend)
+        bending = None
         if finite:
             foreseen = pressure - bend * _unforeseen(of, displacement, growth, since)
-            slope = slope + of.bending(displacement, foreseen, solids.pattern)
+            bending = of.bending(displacement, foreseen, solids.pattern)
+        slope = of.stiffness(now.rows, bend, bending)
     of_cells = np.zeros(solids.mesh.n_cells)
     if not solids.constant:
         of_cells[of.cells] = (of.shares * energy[of.corner]).sum(axis=1)

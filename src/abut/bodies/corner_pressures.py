@@ -2,7 +2,7 @@
 
 Mixed tet10 cells. What of the material the change of volume alone decides acts on its mean about each corner, weighted by
 the linear function of that corner; the pressure is linear between corners. The mass matrix of the pressures is lumped, so
-that they are eliminated corner by corner; what couples is the displacements of all cells about a corner.
+that each follows from the displacements of all cells about its corner; the stiffness has them as a border.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut._core import Cells, block_pattern, finite_strains, integrate_given_finite, shape_functions
+from abut.bordered import Bordered
 from abut.cells import CELLS
 from abut.materials.evaluated import Array
 from abut.materials.volume_split import VolumeLaw
@@ -127,11 +128,10 @@ class CornerPressures:
                 part[own] = values
         return parts[0] * stretch, parts[1], parts[2] / stretch
 
-    def stiffness(self, rows: Sparse, bend: Array) -> Sparse:
-        """(dim n_points, dim n_points) CSR; bend: slopes of the pressures."""
-        scaled = rows.copy()
-        scaled.data *= np.repeat(self.volume * bend, np.diff(rows.indptr))[:, None, None]
-        return (rows.T @ scaled).tocsr()
+    def stiffness(self, rows: Sparse, bend: Array, beside: Sparse | None = None) -> Bordered:
+        """(dim n_points, dim n_points), the pressures kept as unknowns; bend: their slopes; beside: what is added."""
+        rest = sp.csr_matrix((self.points.size,) * 2) if beside is None else beside
+        return Bordered(rest, rows.tocsr(), self.volume * bend)
 
     def bending(self, displacement: Array, pressure: Array, pattern: tuple[Ints, Ints]) -> Sparse:
         """What pressures (n_corners,) add as volumes bend with displacements, (dim n_points, dim n_points) CSR; pattern: CSR

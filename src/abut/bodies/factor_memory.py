@@ -1,4 +1,4 @@
-"""Memory of solvers for the stiffness of bodies, from the number of free displacements; where "auto" can afford more."""
+"""Memory of solvers for the stiffness of bodies, from the number of free displacements."""
 
 from __future__ import annotations
 
@@ -26,18 +26,11 @@ MEMORY = {  # by dimension, solver and degree of the cells: fitted to docs/perfo
     (3, "amg", 2): Memory(1.0e-2, 1.0, 60.0),
 }
 MEMORY_LAYER = Memory(1.0e-2, 1.0)  # solver "direct", quadratic cells in one layer: 837 MB for 77409, 3127 for 306009
-WIDE = Memory(1.8e-3, 4 / 3)  # solver "direct", tet10 whose pressures are continuous: 722 MB for 13872, 1472 for 26460
-# Megabytes up to which "auto" takes such pressures. Of no machine: what a job computes must not depend on where it runs.
-AFFORDED = 8000.0
+# Solver "direct", tet10 whose pressures are continuous: 1.23 times as much, 432 MB for 26460 (full 351), 900 for 56862 (734)
+WIDE = Memory(5.6e-4, 4 / 3)
 
 
 def with_wide(narrow: Memory, n: int, share: float) -> float:
     """Megabytes of the direct solver, where a share of the n displacements has pressures that are continuous; narrow: of
     none."""
     return (1.0 - share) * narrow.megabytes(n) + share * WIDE.megabytes(n)
-
-
-def affordable(n: int, share: float) -> bool:
-    """Whether "auto" may take pressures that are continuous for a share of n displacements, which makes the solver of all
-    a direct one."""
-    return with_wide(MEMORY[3, "direct", 2], n, share) <= AFFORDED

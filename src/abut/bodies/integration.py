@@ -17,13 +17,10 @@ SECOND = 0.4996  # the same for cells of second order, which are a few percent t
 TETRAHEDRA = 240.0  # bulk over shear modulus from which tetrahedra of second order are too stiff: Poisson's ratio 0.498
 
 
-def resolved(
-    how: str, kinds: Iterable[str], plane: str | None, material: Material, finite: bool = False, afforded: bool = True
-) -> str:
+def resolved(how: str, kinds: Iterable[str], plane: str | None, material: Material, finite: bool = False) -> str:
     """What "auto" means for a body of some cell types, finite: under finite strains: "full", but where its
     material hardly changes its volume "b-bar" for cells of first order, "mixed" for those of second order; where it flows
-    "reduced" if that is for all of them. Plane stress does not lock. afforded: whether memory allows for pressures that
-    are continuous (``abut.bodies.factor_memory``); a Poisson's ratio of 0.5 has them in any case."""
+    "reduced" if that is for all of them. Plane stress does not lock."""
     if how != "auto":
         return how
     rest, flows, kinds = linear(material), volume_preserving(material), list(kinds)
@@ -35,8 +32,7 @@ def resolved(
     if flows and poisson < SECOND and all(kind in REDUCED and _locks(kind) for kind in kinds):
         return "reduced"
     if bulk_over_shear(poisson) > TETRAHEDRA and all(kind in CONTINUOUS for kind in kinds):
-        able = volume_split(material, finite) is not None
-        return "mixed" if able and (afforded or poisson == 0.5) else "full"
+        return "full" if volume_split(material, finite) is None else "mixed"
     locked = poisson > SECOND or (flows and all(_locks(kind) for kind in kinds))
     return "mixed" if locked and all(kind in PRESSURES for kind in kinds) else "full"
 

@@ -16,9 +16,10 @@ from abut.mesh.surface import around
 from abut.types import Array, Sparse
 
 
-def mass(mesh: Mesh, densities: Mapping[str, float]) -> Sparse:
+def mass(mesh: Mesh, densities: Mapping[str, float], along: Array | None = None) -> Sparse:
     """int rho N N^T, alike in all directions, theory (J1): (dim n_points, dim n_points) CSR. Per unit thickness in 2D, all
-    round if axisymmetric. densities: of bodies [force time^2 / length^4], those not named have none."""
+    round if axisymmetric. densities: of bodies [force time^2 / length^4], those not named have none; along: (dim, dim) in
+    place of the unit matrix."""
     n, dim = mesh.points.shape
     rows, columns, values = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)], [np.zeros(0)]
     for body, density in densities.items():
@@ -30,7 +31,7 @@ def mass(mesh: Mesh, densities: Mapping[str, float]) -> Sparse:
             each = density * weights * det * around(at, mesh.axisymmetric)
             products = (shapes[:, :, None] * shapes[:, None, :]).reshape(len(weights), -1)
             add_cells(nodes, (each @ products).ravel(), rows, columns, values)
-    return sp.kron(at_nodes(n, rows, columns, values), sp.identity(dim), format="csr")
+    return sp.kron(at_nodes(n, rows, columns, values), np.eye(dim) if along is None else along, format="csr")
 
 
 def add_cells(nodes: Array, entries: Array, rows: list[Array], columns: list[Array], values: list[Array]) -> None:

@@ -28,13 +28,11 @@ def loading_notes(deck: Deck) -> list[str]:
     """What CalculiX adds to the stiffness about a loaded state, and abut does not."""
     if deck.modes is None or not deck.modes.loaded:
         return []
-    kinds = {"centrifugal"} if is_finite(deck) else {"centrifugal", "pressure"}
-    acting = sorted({value.kind for step in deck.steps for value in step.values} & kinds)
-    words = {"centrifugal": "centrifugal forces (they grow with the distance)", "pressure": "pressures (they turn)"}
+    if is_finite(deck) or not any(value.kind == "pressure" for step in deck.steps for value in step.values):
+        return []
     return [
-        f"{deck.steps[-1].place}: *FREQUENCY: {words[kind]} are taken as what they are in the loaded state, CalculiX lets "
-        "them follow the vibration"
-        for kind in acting
+        f"{deck.steps[-1].place}: *FREQUENCY: pressures keep their direction as the loaded state vibrates, CalculiX "
+        "lets them turn"
     ]
 
 

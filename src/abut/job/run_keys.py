@@ -5,7 +5,8 @@ from __future__ import annotations
 RUN: dict[str, dict[str, str]] = {
     "FrequenciesTable": {
         "count": "how many, from the lowest",
-        "stiffening": "whether stresses at the end of the last step change the stiffness; under finite kinematics always",
+        "stiffening": "whether stresses and centrifugal forces at the end of the last step change the stiffness; under "
+        "finite kinematics always",
         "complex": "whether friction of what slips follows the pressure: frequencies with rates of growth (squeal)",
         "diameters": "nodal diameters of a whole of alike sectors, of each of which count frequencies are found: from 0 to "
         "half the sectors; others than 0 come twice each",

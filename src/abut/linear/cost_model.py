@@ -43,7 +43,7 @@ RESULT, RESULT_PAIR, RESULT_MULTIPLIER = 8e-6, 3.5e-2, 4e-5  # seconds a step: b
 # substitution with the factors, share of the iterations of a step that multigrid takes
 AGAIN, SUBSTITUTION, AGAIN_KRYLOV = 4e-6, 2e-6, 0.25
 # Entries and operations on fronts where pressures are continuous, over those of cells alone
-WIDE_ROWS, WIDE_FRONTS = 7.0, 24.0
+WIDE_ROWS, WIDE_FRONTS = 1.2, 1.6
 ROW, FRONT = 5e-6, 1.5e-9  # seconds a row of the stiffness, and an operation on a front, to factorise
 ELIMINATIONS = {1: 1, 2: 2}  # of a step, by degree: on quadratic facets functions change where contact is closed
 DENSE, SOLUTION = 1.5e-10, 8e-3  # seconds a cube of the number of multipliers, and a solution, whatever their size

@@ -167,7 +167,7 @@ def analyse(solver: Foreign, matrix: Sparse, b: NDArray[np.float64]) -> None:
         solver.free_memory(everything=True)
         raise InputError(
             f"solve.linear: the direct solver needs about {needed / 1e9:.1f} GB, but {available / 1e9:.1f} GB of memory are "
-            'free; choose linear = "amg" (3D), a coarser mesh, or a larger machine'
+            'free; choose linear = "amg" (3D, but for mixed tet10), a coarser mesh, or a larger machine'
         )
 
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.bordered import eliminated
 from abut.contact.geometry import facet_products, full_moments
 from abut.errors import SingularModelError
 from abut.linear.bodies_now import bodies_now
@@ -176,7 +177,7 @@ class Multigrid:
             return replace(known, system=system)
         if known is None:
             bodies = bodies_now(self.problem, system)
-            levels = hierarchy(system.stiffness, bodies.free, bodies.near_null, bodies.points)
+            levels = hierarchy(eliminated(system.stiffness), bodies.free, bodies.near_null, bodies.points)
             beside = loose(system, bodies, levels, self.count)
         else:
             levels, beside = known.hierarchy, known.loose
@@ -197,7 +198,8 @@ class Multigrid:
             )
             return replace(previous, system=system, hierarchy=levels, pressures=pressures)
         bodies = bodies_now(self.problem, system)
-        elastic = system.stiffness if system.bending is None else system.stiffness + system.bending
+        own = eliminated(system.stiffness)
+        elastic = own if system.bending is None else own + system.bending
         levels = hierarchy((0.5 * (elastic + elastic.T)).tocsr(), bodies.free, bodies.near_null, bodies.points)
         beside = loose(system, bodies, levels, self.count)
         whole = replace(system, pairs=[wholly_covered(pair) for pair in system.pairs])

@@ -8,13 +8,14 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.bordered import widened, with_border
 from abut.linear import direct
 from abut.linear.foresight import Predict
 from abut.linear.repeated import Repeated
 from abut.linear.solver import ACCURATE, Solve, Vector
 from abut.linear.transposed import by_factors
 from abut.problem.linearised import Linearised, Rows
-from abut.types import Sparse
+from abut.types import Operator, Sparse
 
 
 @dataclass(frozen=True)
@@ -122,12 +123,15 @@ class SaddlePoint:
 
     def solve(self, rows: Rows, residual: Vector, pressure: Vector, accuracy: float) -> tuple[Vector, Vector]:
         """As in ``Prepared``."""
+        stiffness, operator, rows, more = _with_border(self.system.stiffness, self.system.columns, rows)
+        residual, n = np.concatenate([residual, np.zeros(more)]), len(residual)
         if self.system.about is not None and len(pressure) == 0:
-            symmetric, matrix = self.system.symmetric, self.system.stiffness
-            matrix = sp.triu(matrix, format="csr") if symmetric else matrix
-            return self.repeated.solve(matrix, -residual, symmetric=symmetric), pressure
+            symmetric = self.system.symmetric
+            matrix = sp.triu(stiffness, format="csr") if symmetric else stiffness
+            return self.repeated.solve(matrix, -residual, symmetric=symmetric)[:n], pressure
         repeated = None if self.system.about is None else self.repeated
-        return newton_step(self.system.stiffness, self.system.columns, rows, residual, pressure, repeated)
+        du, dp = newton_step(stiffness, operator, rows, residual, pressure, repeated)
+        return du[:n], dp
 
     def transposed(self, rows: Rows, force: Vector, gap: Vector, accuracy: float) -> tuple[Vector, Vector]:
         """As in ``Transposable``."""
@@ -135,18 +139,35 @@ class SaddlePoint:
 
     def factorise(self, rows: Rows) -> Solve:
         """As in ``Prepared``."""
-        return factorise(self.system.stiffness, self.system.operator, rows)
+        stiffness, operator, rows, more = _with_border(self.system.stiffness, self.system.operator, rows)
+        factors = factorise(stiffness, operator, rows)
+
+        def solve(residual: Vector, of_law: Vector) -> tuple[Vector, Vector]:
+            du, dp = factors(np.concatenate([residual, np.zeros(more)]), of_law)
+            return du[: len(residual)], dp
+
+        return solve if more else factors
 
     def respond(self, force: Vector, springs: Vector) -> Vector:
         """As in ``Prepared``."""
-        sprung = self.system.stiffness + sp.diags(springs)
-        return direct.Factorization(direct.store_diagonal(sp.triu(sprung, format="csr"))).solve(force)
+        sprung, more = with_border(self.system.stiffness + sp.diags(springs))
+        factors = direct.Factorization(direct.store_diagonal(sp.triu(sprung, format="csr")))
+        return factors.solve(np.concatenate([force, np.zeros(more)]))[: len(force)]
 
     def foresee(
         self, gap: Vector, pressure: Vector, active: NDArray[np.bool_], tied: NDArray[np.bool_]
     ) -> NDArray[np.bool_]:
         """As in ``Prepared``."""
         return self.predict(gap, pressure, active, tied)
+
+
+def _with_border(stiffness: Operator, operator: Sparse, rows: Rows) -> tuple[Sparse, Sparse, Rows, int]:
+    """With the unknowns that border the stiffness among those of displacements, and how many they are."""
+    whole, more = with_border(stiffness)
+    if not more:
+        return whole, operator, rows, 0
+    by_displacement = widened(sp.csr_matrix(rows.by_displacement), more)
+    return whole, widened(operator, more), replace(rows, by_displacement=by_displacement), more
 
 
 def _whole(stiffness: Sparse, s: Saddle) -> Sparse:

@@ -11,6 +11,7 @@ import scipy.linalg
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.bordered import widened, with_border
 from abut.errors import SingularModelError
 from abut.linear import direct
 from abut.linear.dense import cholesky, dense
@@ -29,7 +30,8 @@ class CondensedProblem:
     """A constant problem on the multipliers and the displacements that had to be kept: ``abut.problem.problem.Problem``.
 
     Everything but ``whole`` and ``refinements`` is private: kept: (n_kept,) displacements; factorization: of the rest;
-    stiffness, operator, compliance: theory (V3); pairs: on the kept displacements. refinements: of a step's end."""
+    stiffness, operator, compliance: theory (V3); pairs: on the kept displacements; first: number of the first multiplier
+    among its unknowns, after displacements and what borders the stiffness. refinements: of a step's end."""
 
     whole: ContactProblem
     kept: NDArray[np.int64]
@@ -39,6 +41,7 @@ class CondensedProblem:
     compliance: NDArray[np.float64]
     pairs: Sequence[Pair]
     motions: NDArray[np.float64]
+    first: int
     constant: bool = True
     refinements: int = REFINEMENTS
 
@@ -53,10 +56,10 @@ class CondensedProblem:
     def linearise(self, before: State, frame: Frame, now: State) -> Linearised:
         """As in ``Problem``; before: in all free displacements; the unknowns of ``now`` do not matter."""
         full = self.whole.linearise(before, frame, now)
-        n = len(full.load)
-        load = self.factorization.forward(np.concatenate([full.load, np.zeros(len(full.offset))]))
+        load = self._forward(full.load)
+        offset = full.offset + load[self.first :]
         return Linearised(
-            full.time, full.factors, self.stiffness, load[self.kept], self.pairs, self.operator, full.offset + load[n:],
+            full.time, full.factors, self.stiffness, load[self.kept], self.pairs, self.operator, offset,
             self.motions, full.restraint, full.load, full.unit, self.compliance,
         )  # fmt: skip
 
@@ -89,45 +92,52 @@ class CondensedProblem:
         """As in ``Problem``. Eliminated stiff parts under soft ones lose digits by cancellation: the equations of the whole
         problem are met anew by refinement."""
         near, whole = system, self.whole.linearise(before, frame, state)
-        n = len(whole.load)
-        inner = self.factorization.forward(np.concatenate([whole.load, np.zeros(len(whole))]))
-        inner[self.kept], inner[n:] = state.unknowns, state.multipliers
+        n, first = len(whole.load), self.first
+        inner = self._forward(whole.load)
+        inner[self.kept], inner[first:] = state.unknowns, state.multipliers
         state = replace(state, unknowns=self.factorization.backward(inner)[:n])
         if not self.refinements:
             return state, whole
         solver = dense(near)
         for _ in range(self.refinements):
-            inner = self.factorization.forward(np.concatenate([-whole.unbalanced(state), np.zeros(len(whole))]))
+            inner = self._forward(-whole.unbalanced(state))
             linear = laws(whole, state)
             opened = [law.residual for law in linear]
-            for i, shift in enumerate(whole.split(inner[n:])):
+            for i, shift in enumerate(whole.split(inner[first:])):
                 if not linear[i].at_points:  # what those see has been kept
                     opened[i] = opened[i] + linear[i].by_gap @ shift
             rows = replace(near.rows(linear), residual=near.join(opened))
             try:
-                inner[self.kept], inner[n:] = solver.solve(rows, -inner[self.kept], state.multipliers, 0.0)
+                inner[self.kept], inner[first:] = solver.solve(rows, -inner[self.kept], state.multipliers, 0.0)
             except SingularModelError:  # laws that have not been met may be too far off to go on from
                 return state, whole
             state = replace(
                 state,
                 unknowns=state.unknowns + self.factorization.backward(inner)[:n],
-                multipliers=state.multipliers + inner[n:],
+                multipliers=state.multipliers + inner[first:],
             )
         return state, whole
+
+    def _forward(self, load: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Forces (n_free,) on the displacements, eliminated."""
+        rest = self.first - len(load) + self.whole.operator.shape[0]
+        return self.factorization.forward(np.concatenate([load, np.zeros(rest)]))
 
 
 def condense(problem: ContactProblem) -> CondensedProblem | None:
     """The problem with all displacements eliminated but those that pairs with a law at the integration points look at, and
     as many as hold the bodies that supports leave free. None where the problem is not constant, where what is left is too
     large for dense matrices, or no solver for it is installed."""
-    n, n_p = problem.n_free, problem.operator.shape[0]
+    n_p = problem.operator.shape[0]
     kept = _kept(problem.pairs, problem.motions)
     if not problem.constant or not 0 < n_p + len(kept) <= LARGEST or n_p == 0:
         return None
-    upper, none = sp.triu(problem.stiffness), sp.csr_matrix((n_p, n_p))
-    matrix = sp.bmat([[upper, -problem.operator.T], [None, none]], format="csr")
+    stiff, more = with_border(problem.stiffness)
+    first = problem.n_free + more
+    upper, none = sp.triu(stiff), sp.csr_matrix((n_p, n_p))
+    matrix = sp.bmat([[upper, -widened(problem.operator, more).T], [None, none]], format="csr")
     factorization = direct.partial_factorization(
-        direct.store_diagonal(matrix), np.concatenate([kept, n + np.arange(n_p)])
+        direct.store_diagonal(matrix), np.concatenate([kept, first + np.arange(n_p)])
     )
     if factorization is None:
         return None
@@ -138,7 +148,7 @@ def condense(problem: ContactProblem) -> CondensedProblem | None:
         cholesky(stiffness, motions, problem.unit)
     except np.linalg.LinAlgError:
         return None  # a zero-energy motion that is not rigid, as of bodies joined in a hinge
-    return CondensedProblem(problem, kept, factorization, stiffness, operator, compliance, pairs, motions)
+    return CondensedProblem(problem, kept, factorization, stiffness, operator, compliance, pairs, motions, first)
 
 
 def _kept(pairs: Sequence[Pair], motions: NDArray[np.float64]) -> NDArray[np.int64]:

@@ -17,6 +17,7 @@ import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
+from abut.bordered import widened, with_border
 from abut.linear import direct
 from abut.linear.krylov import Apply, Vector, fgmres
 from abut.linear.schur_preconditioner import PressureBlock
@@ -61,18 +62,20 @@ def coupled(system: Linearised, rows: Rows) -> Coupled:
 def by_factors(system: Linearised, rows: Rows, force: Vector, gap: Vector) -> tuple[Vector, Vector]:
     """(v, q) by a sparse factorisation. Raises SingularModelError."""
     part, n = coupled(system, rows), len(force)
-    unit = float(np.median(system.stiffness.diagonal()))
+    stiffness, more = with_border(system.stiffness)
+    unit = float(np.median(stiffness.diagonal()))
     by_row = unit / _largest(part.forces)
     by_column = unit / np.maximum(_largest(part.lower), _largest((part.corner @ sp.diags(by_row)).tocsr(), 0.0))
     matrix = sp.bmat(
         [
-            [sp.csr_matrix(system.stiffness).T, (sp.diags(by_column) @ part.lower).T],
-            [-sp.diags(by_row) @ part.forces, (sp.diags(by_column) @ part.corner @ sp.diags(by_row)).T],
+            [sp.csr_matrix(stiffness).T, (sp.diags(by_column) @ widened(part.lower, more)).T],
+            [-sp.diags(by_row) @ widened(part.forces, more), (sp.diags(by_column) @ part.corner @ sp.diags(by_row)).T],
         ],
         format="csr",
     )
-    x = direct.solve(direct.store_diagonal(matrix), np.concatenate([force, by_row * gap[part.chosen]]), symmetric=False)
-    return x[:n], part.complete(system, rows, x[:n], by_column * x[n:], gap)
+    right = np.concatenate([force, np.zeros(more), by_row * gap[part.chosen]])
+    x = direct.solve(direct.store_diagonal(matrix), right, symmetric=False)
+    return x[:n], part.complete(system, rows, x[:n], by_column * x[n + more :], gap)
 
 
 def dense_matrix(system: Linearised, part: Coupled) -> np.ndarray:

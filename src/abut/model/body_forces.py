@@ -122,12 +122,16 @@ class Centrifugal:
         """Acceleration (n, dim) at points (n, dim)."""
         points = np.asarray(points, dtype=float)
         apart = points - (0.0 if self.through is None else np.array(self.through))
+        return np.asarray(apart @ self.slope(points.shape[-1], axisymmetric))
+
+    def slope(self, dim: int, axisymmetric: bool = False) -> NDArray[np.float64]:
+        """(dim, dim) change of the acceleration with the place."""
+        axis = np.zeros(dim)
         if axisymmetric:
-            apart[..., 1] = 0.0
+            axis[1] = 1.0
         elif self.axis is not None:
             axis = np.array(self.axis) / np.linalg.norm(self.axis)
-            apart -= (apart @ axis)[..., None] * axis
-        return np.asarray(self.speed**2 * apart)
+        return np.asarray(self.speed**2 * (np.eye(dim) - np.outer(axis, axis)))
 
 
 Load = Pressure | Traction | Force | Moment | NodalForce | Temperature | Gravity | Centrifugal | BodyForce

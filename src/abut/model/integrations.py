@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
-from abut.bodies.factor_memory import affordable
 from abut.bodies.integration import check_integration, check_resolved, resolved
 from abut.mesh.mesh import Mesh
 from abut.mesh.quadrature import CONTINUOUS
@@ -24,7 +22,7 @@ class Integrations:
 
     def of(self, solid: Solid) -> str:
         """Of one of the solids."""
-        return self._resolved(solid, self.afforded)
+        return resolved(solid.integration, self.kinds(solid.body), self.plane, solid.material, self.finite)
 
     def check(self, solid: Solid, where: str) -> None:
         """Raises InputError, beginning with ``where``, for cells and materials that it is not for."""
@@ -45,28 +43,10 @@ class Integrations:
     @property
     def wide(self) -> list[str]:
         """Bodies whose pressures are continuous."""
-        return self._wide(self.afforded)
-
-    @property
-    def too_wide(self) -> list[str]:
-        """Those that "auto" would give such pressures if memory allowed."""
-        return [] if self.afforded else [body for body in self._wide(True) if body not in self.wide]
-
-    @cached_property
-    def afforded(self) -> bool:
-        """Whether "auto" may give bodies pressures that are continuous."""
-        nodes = sum(len(self.mesh.nodes_of(body)) for body in self._wide(True))
-        return nodes == 0 or affordable(self.mesh.points.size, nodes / len(self.mesh.points))
+        known = [solid for solid in self.solids if solid.body in self.mesh.bodies]
+        tetrahedra = [solid for solid in known if any(kind in CONTINUOUS for kind in self.kinds(solid.body))]
+        return [solid.body for solid in tetrahedra if self.of(solid) == "mixed"]
 
     def kinds(self, body: str) -> list[str]:
         """Types of its cells."""
         return sorted({kind for kind, _, _ in self.mesh.cells_of(body)})
-
-    def _resolved(self, solid: Solid, afforded: bool) -> str:
-        kinds = self.kinds(solid.body)
-        return resolved(solid.integration, kinds, self.plane, solid.material, self.finite, afforded)
-
-    def _wide(self, afforded: bool) -> list[str]:
-        known = [solid for solid in self.solids if solid.body in self.mesh.bodies]
-        tetrahedra = [solid for solid in known if any(kind in CONTINUOUS for kind in self.kinds(solid.body))]
-        return [solid.body for solid in tetrahedra if self._resolved(solid, afforded) == "mixed"]

@@ -24,7 +24,8 @@ class Frequencies:
     count : int
         How many, from the lowest.
     stiffening : bool
-        Whether stresses at the end of the last step change the stiffness. With kinematics "finite" they always do.
+        Whether stresses and centrifugal forces at the end of the last step change the stiffness. With kinematics "finite"
+        they always do.
     complex : bool
         Whether friction of what slips follows the pressure as it vibrates: complex frequencies, of which some may grow
         (squeal).

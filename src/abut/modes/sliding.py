@@ -8,6 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.bordered import eliminated
 from abut.linear import direct
 from abut.modes.held import Held
 from abut.problem.linearised import Linearised
@@ -36,7 +37,8 @@ def sliding(system: Linearised, state: State, held: Held) -> Sliding:
     follows = sp.block_diag(blocks, format="csr") if blocks else sp.csr_matrix((count, count))
     columns, kept = sp.csr_matrix(system.columns), held.kept
     pushing = (columns[kept] + follows[:, kept].T @ columns).tocsr()
-    return Sliding((0.5 * (system.stiffness - system.stiffness.T)).tocsr(), pushing, bool(follows.nnz))
+    stiffness = eliminated(system.stiffness)
+    return Sliding((0.5 * (stiffness - stiffness.T)).tocsr(), pushing, bool(follows.nnz))
 
 
 def _follows(pair: Pair, factors: Vector, multipliers: Vector, slipping: NDArray[np.bool_]) -> Sparse:

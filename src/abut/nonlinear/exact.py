@@ -72,7 +72,7 @@ def finer(solver: Prepared, solved: Solved, settings: Settings, aim: Aim) -> flo
     """The reduction of the residual to ask for next where it has not: the rougher the state in which a set stands still,
     the less is it worth to be solved to the end."""
     asked = settings.accuracy
-    last = asked.share * _wanted(solver, settings, aim) / solved.error
+    last = asked.spare * _wanted(solver, settings, aim) / solved.error
     return max(last, min(solved.error**2, asked.rough), asked.fine)
 
 

@@ -12,5 +12,5 @@ def forcing(error: float, before: float, settings: Settings) -> float:
     less than the last iteration needs. error, before: what is left now, and was an iteration ago (infinite in the first)."""
     asked = settings.accuracy
     wanted = asked.share * (error / before) ** 2 if np.isfinite(before) else asked.rough
-    last = asked.share * settings.newton.balanced / max(error, NOTHING)
+    last = asked.spare * settings.newton.balanced / max(error, NOTHING)
     return float(np.clip(wanted, min(max(asked.fine, last), asked.rough), asked.rough))

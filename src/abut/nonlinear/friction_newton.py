@@ -116,7 +116,7 @@ class Sliding(Method[Trial]):
         asked, changed, left, wanted = self._settings.accuracy, there.changed, there.left, there.wanted
         self._fewest, self._least = min(self._fewest, changed), min(self._least, left)
         self._before = left if not changed else np.inf
-        self._accuracy = asked.rough if changed else max(asked.share * self._tolerance / left, asked.stride)
+        self._accuracy = asked.rough if changed else max(asked.spare * self._tolerance / left, asked.stride)
         self._seen.add(wanted.tobytes())
         misled, self._foreseen_other, self._last = self._foreseen_other and changed >= self._last, False, changed
         status = wanted
@@ -142,7 +142,7 @@ def advanced(solver: Prepared, state: State, increment: Increment, accuracy: flo
         left /= largest_force(system, state, system.internal(state), increment)
         if left <= asked.told:
             break
-        accuracy = float(np.clip(asked.told / left, asked.stride, asked.share))
+        accuracy = float(np.clip(asked.told / left, asked.stride, asked.spare))
     return state
 
 

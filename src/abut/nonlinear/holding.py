@@ -56,7 +56,7 @@ def resisting(problem: ContactProblem, system: Linearised, state: State, setting
     least = settings.newton.rounding * float(np.abs(system.stiffness.diagonal()).max())
     resistance = max(float(forces.max()) / (settings.holding.near * _facet(problem)), least)
     more = resistance * sp.identity(system.stiffness.shape[0], format="csr")
-    return replace(system, stiffness=(system.stiffness + more).tocsr())
+    return replace(system, stiffness=system.stiffness + more)
 
 
 def loosely_held(problem: ContactProblem, balance: Balance, state: State, weak: float) -> bool:

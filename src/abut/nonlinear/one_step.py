@@ -50,7 +50,7 @@ class Setting:
         increment = Increment(self.number, before.largest, self.settings)
         step = Step(problem, begin, frame, self.solver, increment, self.limit, self.observe, careful=careful, drag=drag)
         found = solve_finite(step, guess, time)
-        spreads = self.settings.steps.tries if frame.wet else 0
+        spreads = self.settings.steps.solutions if frame.wet else 0
         for done in range(AGAIN + spreads):
             frame = step.frame
             if found.converged:
@@ -160,7 +160,7 @@ def stabilised(setting: Setting, before: State, time: float) -> Led:
     strength = Strength(begin, settings, asked.change)
     here, parts, spent = before, list[Attempt](), tuple[Iteration, ...]()
     part, why = None, "bodies do not come to rest"
-    for _ in range(settings.steps.tries):
+    for _ in range(settings.steps.solutions):
         drag = Drag(strength.share * size, here.unknowns)
         part = setting.attempted(here, here if parts else None, time, drag=drag)
         spent += part.iterations

@@ -53,10 +53,8 @@ class AccuracySettings:
 
     rough: float = _of(1e-2, "of the residual", "left at most", "test_forcing.py")
     fine: float = _of(1e-5, "of the residual", "below which it need not fall in one solution", "test_forcing.py")
-    share: float = _of(
-        0.5, "of the last reduction squared; of what may be left", "left next (Eisenstat, Walker 1996); in the last one",
-        "test_forcing.py",
-    )  # fmt: skip
+    share: float = _of(0.5, "of the last reduction squared", "left next (Eisenstat, Walker 1996)", "test_forcing.py")
+    spare: float = _of(0.3, "of what may be left", "aimed at in the last solution", "test_forcing.py")
     stride: float = _of(1e-4, "of the residual", "at most in one solve while a set may change", "test_multigrid.py")
     told: float = _of(0.2, "of forces and pressures", "left in a state that tells the next set", "test_multigrid.py")
 
@@ -67,26 +65,27 @@ class StepSettings:
 
     first: float = _of(0.1, "of the way to the next goal", "the first step", "test_pace.py")
     easy: int = _of(
-        6, "iterations", "up to which the next step is longer; shorter above twice as many, halved above four times",
+        6, "iterations", "up to which the next step is longer; shorter above twice, halved above four times as many",
         "test_pace.py, test_large_sliding.py",
     )  # fmt: skip
-    growth: float = _of(1.5, "step over the last one", "after an easy step", "test_pace.py")
-    shrink: float = _of(0.7, "step over the last one", "after a hard step", "test_pace.py")
+    shorter: float = _of(
+        0.7, "step over the last one", "after a hard step; its inverse after an easy one; of what the onset of slip allows",
+        "test_pace.py, test_onset_of_slip.py",
+    )  # fmt: skip
     missed: float = _of(
         0.01, "of friction", "that a step gets wrong: where points touch and stick in it, and where slip begins in it",
         "test_step_error.py, test_onset_of_slip.py",
     )  # fmt: skip
     points: int = _of(8, "load steps", "over which contact begins to slip, theory (R21)", "test_onset_of_slip.py")
-    aim: float = _of(0.8, "of the longest step", "that the onset of slip allows", "test_onset_of_slip.py")
     smallest: float = _of(
         1.0 / 4096.0, "of the way to the next goal", "step; its root where the user gives steps", "test_pace.py",
     )  # fmt: skip
     careful: int = _of(
         2, "cuts in a row", "from which on a line search shortens iterations", "test_stabilised.py",
     )  # fmt: skip
-    tries: int = _of(
-        60, "solutions of a step", "while a fluid gets on in a contact, or in parts under a drag",
-        "test_penetration.py, test_large_sliding.py::test_too_much_ends_with_words",
+    solutions: int = _of(
+        60, "solutions of a step", "under a drag; after each of which a fluid may get on in a contact",
+        "test_large_sliding.py::test_too_much_ends_with_words, test_penetration.py",
     )  # fmt: skip
 
 
@@ -113,7 +112,7 @@ class DragSettings:
     """A drag that leads a step, theory (G23). Relative forces are over the largest of the step."""
 
     slight: float = _of(
-        1e-3, "of the stiffness; of the largest force", "to begin with; at which bodies are all but at rest",
+        1e-3, "of the stiffness, of the largest force", "drag to begin with, at which bodies are all but at rest",
         "test_stabilised.py",
     )  # fmt: skip
     greatest: float = _of(1e2, "of the stiffness", "drag at most", "test_stabilised.py")
@@ -139,8 +138,10 @@ class InteriorSettings:
 
     boundary: float = _of(0.995, "of the way to it", "that a step goes", "test_search.py")
     central: float = _of(1e-3, "of the mean product", "that the smallest keeps", "test_search.py")
-    farther: float = _of(0.3, "of a step", "that a corrector aims to gain", "test_search.py")
-    worth: float = _of(0.1, "of that gain, of the product aimed at", "below which it is none", "test_search.py")
+    bold: float = _of(
+        0.1, "of a step, of that gain, of the product aimed at", "that a corrector aims to gain, and must (Gondzio 1996)",
+        "test_search.py",
+    )  # fmt: skip
     undecided: float = _of(0.4, "relative change", "from -1/2: neither closing nor opening", "test_search.py")
     steepest: float = _of(100.0, "coefficient of friction", "of surfaces that never slip", "test_friction.py")
     fade: float = _of(0.3, "of the last one", "softness or dilatancy once laws are met", "test_smooth_friction_runs.py")

@@ -62,7 +62,7 @@ class SmallSteps:
         """A step, solved again until a fluid is where it has got to at its end."""
         attempt = load_step(task, end, prepared)
         done = attempt.iterations
-        for _ in range(self._control.settings.steps.tries if task.frame.wet else 0):
+        for _ in range(self._control.settings.steps.solutions if task.frame.wet else 0):
             frame = self._problem.settled(task.before, task.frame, attempt.state) if attempt.converged else task.frame
             if frame is task.frame:
                 return replace(attempt, iterations=done)

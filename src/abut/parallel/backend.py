@@ -14,6 +14,7 @@ from abut.bodies.evaluation import History
 from abut.bodies.inverted import Inverted
 from abut.bodies.solids import Solids, TemperatureChange
 from abut.bodies.stress import PointStress
+from abut.bordered import Bordered, eliminated
 from abut.contact.coupling import Coupling, CouplingOptions
 from abut.contact.coupling_tangent import ContactLoad, CouplingTangent
 from abut.contact.moving_normals import MovingNormals
@@ -28,7 +29,6 @@ from abut.parallel.partition import Layout, Piece, layout, owners, pieces, point
 from abut.parallel.team import Kept, Team
 from abut.problem.backend import Deformed
 from abut.problem.constraints import Constraints
-from abut.types import Sparse
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class DistributedBodies:
         return self.model.deformable.cellwise
 
     @cached_property
-    def pressed(self) -> Sparse | None:
+    def pressed(self) -> Bordered | None:
         """Stiffness of these pressures at rest."""
         return pressure_stiffness(self.model.deformable)
 
@@ -228,7 +228,7 @@ class TangentOfParts:
 
     bodies: DistributedBodies
     kept: Kept
-    pressed: Sparse | None = None
+    pressed: Bordered | None = None
 
     def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
         """As in ``Tangent``."""
@@ -242,9 +242,9 @@ class TangentOfParts:
         return with_pressures(self.bodies.reduced(self.kept.number, constraints), self.pressed, constraints)
 
 
-def with_pressures(matrix: Distributed, pressed: Sparse | None, constraints: Constraints) -> Distributed:
-    """A stiffness with what pressures add to it, which belongs to the bodies for multigrid, too."""
-    return matrix if pressed is None else (matrix + constraints.reduce(pressed)).whole()
+def with_pressures(matrix: Distributed, pressed: Bordered | None, constraints: Constraints) -> Distributed:
+    """A stiffness with what pressures, eliminated, add to it, which belongs to the bodies for multigrid, too."""
+    return matrix if pressed is None else (matrix + eliminated(constraints.reduced(pressed))).whole()
 
 
 def deal_out(model: Model, team: Team) -> DistributedBodies:

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.bodies.factor_memory import AFFORDED
 from abut.errors import InputError
 from abut.model import Model
 from abut.model.conditions import weights
@@ -123,9 +122,6 @@ def _describe_cells(model: Model, note: Callable[[str], None]) -> None:
     for solid in model.solids:
         if solid.integration == "auto" and (how := model.integration(solid)) != "full":
             note(f"body '{solid.body}': integration = \"{how}\", as cells that keep their volume would lock otherwise")
-    for body in model.integrations.too_wide:
-        much = f"{AFFORDED / 1000.0:.0f} GB"
-        note(f'body \'{body}\': integration = "full", which is too stiff here; "mixed" would need more than {much}')
 
 
 def _bodies(model: Model, loaded: Loads, backend: Backend) -> Bodies:

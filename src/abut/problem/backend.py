@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.bodies.assemble import respond, stiffness
+from abut.bodies.assemble import respond, stiffness_at_rest
 from abut.bodies.evaluation import History
 from abut.bodies.solids import TemperatureChange
 from abut.bodies.stress import PointStress, point_stress
@@ -21,7 +21,7 @@ from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.problem.constraints import Constraints
 from abut.problem.terms import Tangent
-from abut.types import Sparse
+from abut.types import Operator
 
 
 @dataclass(frozen=True)
@@ -71,10 +71,10 @@ class Backend(Tangent, Protocol):
 
 @dataclass(frozen=True)
 class Serial:
-    """All of it in this process. matrix: stiffness over all points, (dim n_points, dim n_points) CSR."""
+    """All of it in this process. matrix: stiffness over all points, (dim n_points, dim n_points), with its border."""
 
     model: Model
-    matrix: Sparse
+    matrix: Operator
 
     def couple(self, contactor: Surface, target: Surface, degree: int, options: CouplingOptions) -> Coupling:
         """As in ``Backend``."""
@@ -91,9 +91,9 @@ class Serial:
         """As in ``Backend``."""
         return np.asarray(self.matrix @ displacement)
 
-    def reduce(self, constraints: Constraints) -> Sparse:
-        """As in ``Backend``, CSR."""
-        return constraints.reduce(self.matrix)
+    def reduce(self, constraints: Constraints) -> Operator:
+        """As in ``Backend``, CSR or ``Bordered``."""
+        return constraints.reduced(self.matrix)
 
     def stress(
         self, displacement: NDArray[np.float64], change: TemperatureChange, history: History | None = None
@@ -117,4 +117,4 @@ class Serial:
 
 def serial(model: Model) -> Serial:
     """Assemble a model in this process."""
-    return Serial(model, stiffness(model.deformable))
+    return Serial(model, stiffness_at_rest(model.deformable))

@@ -11,6 +11,7 @@ import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
 from abut._core import principal_submatrix
+from abut.bordered import Bordered
 from abut.contact.geometry import nodal_normals
 from abut.dofs import dofs_at, n_dofs, n_places, place_of, widened
 from abut.errors import SingularModelError
@@ -22,7 +23,7 @@ from abut.problem.other_fields import OtherFields
 from abut.problem.rigid_bodies import RigidBody, body_rows, rigid_bodies
 from abut.problem.sections import shortenings_of
 from abut.problem.turns import Turn, Turns, about
-from abut.types import Array, Sparse
+from abut.types import Array, Operator, Sparse
 
 AXIS = -1  # origin of the condition that points on the axis of symmetry stay there
 ON_AXIS = 1e-9  # radius over the model's size that counts as none
@@ -129,6 +130,12 @@ class Constraints:
             )
             return sp.csr_matrix((data, indices, indptr), shape=(self.free.shape[1], self.free.shape[1]))
         return (self.free.T @ matrix @ self.free).tocsr()
+
+    def reduced(self, matrix: Operator) -> Operator:
+        """The same of a matrix that may have a border, which stays."""
+        if not isinstance(matrix, Bordered):
+            return self.reduce(matrix)
+        return matrix.within(self.free, self.reduce(matrix.matrix))
 
     def held_share(self, points: NDArray[np.int64], directions: NDArray[np.float64]) -> NDArray[np.float64]:
         """How much of a direction (n, dim unit vectors) is held at each of n points: 1 fully, 0 free."""

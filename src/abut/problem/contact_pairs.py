@@ -117,8 +117,9 @@ def pair(
     constant, varying = offsets(model, contact)
     border = rim(contactor)
     beyond, sides_end = goes_on(contactor, border, target, reach), rim_of_sides(contactor)
-    interior = _interior(contactor, coupling, border, beyond) if space.name == DUAL_P1 else None
-    flush = None if interior is None or model.finite else FlushEdges.of(contactor, border, interior)
+    inside = None if space.ordinary else _interior(contactor, coupling, border, beyond)
+    interior = inside if space.name == DUAL_P1 else None
+    flush = None if inside is None or model.finite else FlushEdges.of(contactor, border, inside)
     planes = planes_of(model, contactor, sides_end, goes_on(contactor, sides_end, target, reach), constraints)
     own_pair = Pair(
         contact, contactor, target, coupling, space, rows, free,
@@ -209,14 +210,15 @@ def _square_to_planes(model: Model, border: Rim) -> Rim:
 
 
 def with_plain_functions(model: Model, earlier: Pair, constraints: Constraints, active: NDArray[np.bool_]) -> Pair:
-    """A pair of the space "dual-P1" with the ordinary functions well inside closed contact; any other as it is.
+    """A pair of dual functions with the ordinary ones at edges where both sides end, theory (P26), and one of the space
+    "dual-P1" with them well inside closed contact; any other as it is.
 
     active: (n,) bool, the multipliers in contact."""
-    if earlier.interior is None:
-        return earlier
-    inner = inner_facets(earlier.space, earlier.contactor, earlier.interior, active)
+    inner, closed = np.zeros(len(earlier.contactor), dtype=bool), active[earlier.normal]
+    if earlier.interior is not None:
+        inner = inner_facets(earlier.space, earlier.contactor, earlier.interior, closed)
     if earlier.flush is not None:
-        inner |= earlier.flush.facets(earlier.space, active)
+        inner = inner | earlier.flush.facets(earlier.space, closed)
     if not inner.any():
         return earlier
     return _in_space(

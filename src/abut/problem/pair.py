@@ -95,7 +95,7 @@ class Pair:
     compliance: float  # 2 (1 - nu^2) / E of both sides together: what half spaces yield, times the wave number
     points: PairPoints | None = None  # where the law is evaluated at the integration points
     interior: NDArray[np.bool_] | None = None  # (n_facets,) where "dual-P1" may have ordinary functions
-    flush: FlushEdges | None = None  # of "dual-P1"
+    flush: FlushEdges | None = None  # the same of dual functions of either space, at small displacements
     planes: Planes | None = None  # of symmetry, at which the contactor ends; None of ties
     repeated: bool = False  # equations tie displacements together that the constraints would take one by one
     slip: Slip | None = None  # with friction

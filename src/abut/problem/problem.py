@@ -62,8 +62,8 @@ class Problem(Protocol):
         ...
 
     def with_ordinary(self, closed: NDArray[np.bool_]) -> Problem:
-        """With the ordinary functions of "dual-P1" where the multipliers ``closed`` (n,) let them be; the same object where
-        they are nowhere; theory (P9)."""
+        """With ordinary functions in place of dual ones where the multipliers ``closed`` (n,) let them be; the same object
+        where they are nowhere; theory (P9), (P26)."""
         ...
 
     def alone_at_edges(self, closed: NDArray[np.bool_], state: State | None = None) -> NDArray[np.bool_]:
@@ -172,9 +172,9 @@ class ContactProblem(Discretised):
         for pair, own, part in zip(self.pairs, self.split(np.arange(len(closed))), self.split(closed)):
             if pair.flush is None:
                 continue
-            alone = pair.flush.alone(pair.space, part)
+            alone = pair.flush.alone(pair.space, part[pair.normal])
             if state is not None and alone.any():
                 moved = self.displacement(state).reshape(-1, self.model.dim)
                 alone = pair.flush.on(pair.space, alone, apart(pair, moved, self.added(pair, state.time)))
-            found[own] = alone
+            found[own[pair.normal]] = alone
         return found

@@ -13,7 +13,7 @@ from abut.materials.kernel import Since
 from abut.model.rates import Rates
 from abut.problem.constraints import Constraints
 from abut.problem.wet import Wet
-from abut.types import Operator, Sparse
+from abut.types import Operator
 
 Vector = NDArray[np.float64]
 
@@ -32,17 +32,18 @@ class Tangent(Protocol):
 
 @dataclass(frozen=True)
 class MatrixTangent:
-    """A tangent that is a sparse matrix: over all values (n_values, n_values), or over displacements alone."""
+    """A tangent that is a matrix, sparse or ``Bordered``: over all values (n_values, n_values), or over displacements
+    alone."""
 
-    matrix: Sparse
+    matrix: Operator
 
     def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
         """As in ``Tangent``."""
         return np.asarray(self.matrix @ displacement)
 
-    def reduce(self, constraints: Constraints) -> Sparse:
-        """As in ``Tangent``, CSR."""
-        return constraints.reduce(self.matrix)
+    def reduce(self, constraints: Constraints) -> Operator:
+        """As in ``Tangent``."""
+        return constraints.reduced(self.matrix)
 
 
 @dataclass(frozen=True)
