@@ -27,7 +27,8 @@ from abut.decks.large import is_finite
 from abut.decks.translation import translate
 from abut.errors import AbutError, ConvergenceError, InputError
 from abut.io.deck import read_deck
-from abut.io.deck.record import Deck, Thin
+from abut.io.deck.record import Deck
+from abut.io.deck.thin_record import Thin
 from abut.io.deck.time_histories import ends
 from reference import EXAMPLES, PROCEDURES, TYPES, NoReference, Reference, decks, difference, reference
 

@@ -161,6 +161,56 @@ def test_five_leaves(given: dict[str, Any]) -> None:
     assert at_clamp(solution) < 0.05 * LOAD
 
 
+@pytest.mark.parametrize("given", [{}, {"friction": 0.3}], ids=str)
+@pytest.mark.parametrize("cell", ["quad8", "tri6"])
+def test_beside_glue(cell: str, given: dict[str, Any]) -> None:
+    """Leaves glued together behind x = 0, where the gap opens as a parabola, on a target that goes on there: the same
+    force, 5 % for how the glued part gives way."""
+    mesh = join(
+        {
+            name: rectangle((-5.0, end), (y, y + 1.0), (round(end + 5.0), 1), cell)
+            for name, end, y in (("long", TWO[0], 0.0), ("short", SHORT, -1.0))
+        }
+    )
+    surfaces, parts = dict(mesh.surfaces), ("long.bottom", "short.top")
+    for name in parts:
+        surface = mesh.surface(name)
+        free = surface.points[surface.nodes[:, :2], 0].mean(axis=1) > 0.0
+        surfaces |= {f"{name} free": surfaces[name][free], f"{name} glued": surfaces[name][~free]}
+    model = abut.Model(
+        replace(mesh, surfaces=surfaces), [abut.Solid(name, STEEL) for name in mesh.bodies],
+        [abut.Support(f"{name}.left", x=0.0, y=0.0) for name in mesh.bodies], [abut.Traction("long.right", (0.0, -LOAD))],
+        [abut.Contact(contactor="short.top free", target="long.bottom", name="on short", **given),
+         abut.Contact("short.top glued", "long.bottom glued", kind="tied")],
+        plane="stress",
+    )  # fmt: skip
+    solution = abut.solve(model)
+    assert between(solution) == pytest.approx(bent_leaves(list(TWO), BENDING, LOAD).forces, rel=0.05)
+    assert at_clamp(solution) == 0.0
+
+
+@pytest.mark.parametrize(("wide", "narrow"), [(2.0, 1.0), (4.0, 2.0)])
+@pytest.mark.parametrize("swap", [False, True])
+def test_leaves_of_different_width(wide: float, narrow: float, swap: bool) -> None:
+    """A narrow leaf under a wide one, which goes on beside it; both bend by as much at its end, 1 %."""
+    model = leaves("hex20", 5, "section")
+    mesh = join(
+        {
+            name: box((0.0, end), (-0.5 * w, 0.5 * w), (z, z + 1.0), (round(0.5 * end), round(w), 1), "hex20")
+            for name, end, w, z in (("leaf 0", TWO[0], wide, 0.0), ("leaf 1", SHORT, narrow, -1.0))
+        }
+    )
+    x = mesh.points
+    sets = {f"leaf {k} middle": np.flatnonzero((x[:, 0] == 0.0) & (x[:, 2] == 0.5 - k)) for k in (0, 1)}
+    sides = ("leaf 0.bottom", "leaf 1.top")
+    contact = replace(model.contacts[0], contactor=sides[not swap], target=sides[swap])
+    mesh = replace(mesh, node_sets={**mesh.node_sets, **sets})
+    solution = abut.solve(replace(model, mesh=mesh, contacts=[contact]))
+    force = LOAD * wide * narrow / (wide + narrow) * (3.0 * TWO[0] - SHORT) / (2.0 * SHORT)
+    assert WIDE * between(solution)[0] == pytest.approx(force, rel=0.01)
+    assert at_clamp(solution) == 0.0
+
+
 def test_contact_at_an_edge_alone() -> None:
     """Two blocks, flush, of which one turns and comes in by .006 at one end, which opens by .025 within a facet: in the
     mean it is open there, but the ends would lie in each other, so that dual functions stay."""

@@ -89,9 +89,42 @@ def test_refused(tmp_path: Path) -> None:
         abut.beam_forces(replace(solution, model=hot), "rib")
     metal = abut.Plastic(E, 0.3, [(0.0, 200.0), (0.1, 300.0)])
     yields = replace(model, solids=[replace(model.solids[0], material=metal)])
-    with pytest.raises(InputError, match="has a history"):
+    with pytest.raises(InputError, match="with a history"):
         abut.beam_forces(replace(solution, model=yields), "rib")
     held = [abut.MidSupport("left", **CLAMPED)]
     sheet = abut.thicken(strip(tmp_path / "b.msh"), {"strip": abut.Shell(1.0)}, held)
     with pytest.raises(InputError, match="'strip' is no beam"):
         abut.beam_forces(solved(sheet, "strip"), "strip")
+
+
+def test_in_files(tmp_path: Path) -> None:
+    """``beams.pvd`` with lines that VTK reads, ``beams.csv`` with a row for each section, both of which go with what is
+    written, and the report."""
+    import csv
+
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+
+    solution = solved(cantilever("circle", tmp_path, LOAD), "rib", "full")
+    out = abut.write(solution, tmp_path / "out")
+    assert "beams_0001.vtu" in (out / "beams.pvd").read_text()
+    reader = vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(out / "beams_0001.vtu"))
+    reader.Update()
+    grid = reader.GetOutput()
+    assert (grid.GetNumberOfCells(), grid.GetNumberOfPoints()) == (5, 6)
+    for i in range(5):  # each from one section to the next
+        ends = [grid.GetPoint(grid.GetCell(i).GetPointId(k))[0] for k in range(2)]
+        assert ends[1] - ends[0] == pytest.approx(LENGTH / 5)
+    assert grid.GetPointData().GetArray("normal_force").GetValue(3) == pytest.approx(10.0, rel=1e-5)
+    rows = list(csv.DictReader((out / "beams.csv").read_text().splitlines()))
+    assert len(rows) == 6
+    for row in rows:
+        arm = LENGTH - float(row["x"])
+        assert float(row["torque"]) == pytest.approx(50.0, abs=1e-4)
+        assert float(row["moment_z"]) == pytest.approx(arm, abs=2e-4)
+    report = (out / "report.html").read_text()
+    assert "Forces across the sections of beams" in report
+    hot = replace(solution, model=replace(solution.model, solids=[replace(solution.model.solids[0], temperature=10.0)]))
+    abut.write(hot, out)
+    assert not list(out.glob("beams*"))
+    assert "not known: it is heated" in (out / "report.html").read_text()

@@ -235,11 +235,13 @@ def _infsup(arguments: argparse.Namespace) -> int:
     for result in results:
         first = result.levels[0]
         show(f"contact '{first.contact}', pressure {first.space}")
-        show("  multipliers   facet size   beta (H^-1/2)   beta (h M)   spurious modes")
+        cells = any(level.cells is not None for level in result.levels)
+        beside = "   beta with cells" if cells else ""
+        show(f"  multipliers   facet size   beta (H^-1/2)   beta (h M)   spurious modes{beside}")
         for level in result.levels:
             show(
                 f"  {level.multipliers:11d}   {level.size:10.4g}   {level.trace:13.4f}   {level.mesh:10.4f}   "
-                f"{level.spurious:14d}"
+                f"{level.spurious:14d}{'' if level.cells is None else f'   {level.cells:15.4f}'}"
             )
         show(f"  {result.verdict}")
     return DONE if all(r.stable for r in results) else FAILED

@@ -1,4 +1,5 @@
-"""Edges at which both sides of a contact end, as at a clamp common to both, and what is closed there alone; theory (P26)."""
+"""Edges at which both sides of a contact end, as at a clamp common to both, or beyond which the contactor's body goes on, as
+beside glue, and what is closed there alone; theory (P26)."""
 
 from __future__ import annotations
 
@@ -8,9 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.cells import BY_CODE, MAX_FACET_NODES
+from abut.contact.geometry import beside_others
 from abut.contact.pressure_space import PressureSpace
 from abut.contact.rim import Rim
 from abut.mesh.surface import Surface
+
+
+def second_order(surface: Surface) -> NDArray[np.bool_]:
+    """Facets (n_facets,) of degree 2."""
+    return np.isin(surface.kinds, [cell.code for cell in BY_CODE if cell.degree == 2])
 
 
 @dataclass(frozen=True)
@@ -23,11 +30,10 @@ class FlushEdges:
     at_edge: NDArray[np.bool_]
 
     @classmethod
-    def of(cls, contactor: Surface, border: Rim, interior: NDArray[np.bool_]) -> FlushEdges:
-        """border: of the contactor; interior: (n_facets,) bool, those that are covered all over, and at no edge beyond which
-        the target goes on."""
-        second = [cell.code for cell in BY_CODE if cell.degree == 2]
-        here = interior[border.facet] & np.isin(contactor.kinds[border.facet], second)
+    def of(cls, contactor: Surface, border: Rim, some: NDArray[np.bool_]) -> FlushEdges:
+        """border: of the contactor; some: (m,) of its edges, those at which both sides end, or the contactor's body goes on.
+        Facets between targets beside each other have none."""
+        here = some & (second_order(contactor) & ~beside_others(contactor))[border.facet]
         facet, ends = border.facet[here], border.ends[here]
         nodes = contactor.nodes[facet]
         count = np.array([BY_CODE[code].corners for code in contactor.kinds[facet].tolist()], dtype=np.int64)

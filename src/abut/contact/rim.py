@@ -9,8 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.cells import CELLS
-from abut.contact.geometry import by_kind, nodal_normals, split_at_creases
+from abut.contact.geometry import CREASE, by_kind, mean_normals, nodal_normals, split_at_creases
 from abut.contact.node_to_segment import feet
+from abut.mesh.exterior import numbered, single_facets
+from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
 
 BEYOND = 0.1  # of the distance from a facet's middle to its edge: how far outside the target is looked for
@@ -55,6 +57,32 @@ def goes_on(contactor: Surface, rim: Rim, target: Surface, reach: float) -> NDAr
     return np.asarray(feet(edge + BEYOND * rim.out, rim.normal, target, reach)[0] >= 0)
 
 
+def body_goes_on(mesh: Mesh, contactor: Surface, rim: Rim, some: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Edges (m,) out of ``some`` (m,) beyond which the contactor's own body goes on smoothly, as beside a glued part."""
+    result = np.zeros(len(rim.facet), dtype=bool)
+    at = np.flatnonzero(some)
+    if not len(at):
+        return result
+    near = np.zeros(len(mesh.points), dtype=bool)
+    near[rim.ends[at]] = True
+    beside = [
+        (kind, nodes[keep], cells[keep]) for kind, nodes, cells in numbered(mesh) for keep in [near[nodes].any(axis=1)]
+    ]
+    outside = mesh.facets(single_facets(mesh, beside))
+    normals = mean_normals(outside)
+    edge = np.sort(rim.ends[at].astype(np.int64), axis=1) @ (len(mesh.points), 1)
+    facet, ends = _all_edges(outside)
+    other = np.sort(ends, axis=1) @ (len(mesh.points), 1)
+    order = np.argsort(edge)
+    place = np.minimum(np.searchsorted(edge[order], other), len(edge) - 1)
+    met = edge[order][place] == other
+    mine, theirs = at[order[place[met]]], facet[met]
+    own = outside.cells[theirs] == contactor.cells[rim.facet[mine]]
+    smooth = (normals[theirs] * rim.normal[mine]).sum(axis=1) > CREASE
+    result[mine[smooth & ~own]] = True
+    return result
+
+
 def ends_on_target(contactor: Surface, rim: Rim, on: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Facets (n_facets,) with a corner on an edge of the contactor's rim (in 2D an end of it) beyond which the target goes
     on; not those at a rim where the target ends too, as flush blocks and symmetry planes have. on: (m,) as ``goes_on``."""
@@ -64,7 +92,15 @@ def ends_on_target(contactor: Surface, rim: Rim, on: NDArray[np.bool_]) -> NDArr
 
 
 def _edges(surface: Surface) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Facet (m,) and corner points (m, 2) of every edge that belongs to one facet only; in 2D the point twice."""
+    """Those of ``_all_edges`` that belong to one facet only."""
+    facet, every = _all_edges(surface)
+    _, first, count = np.unique(np.sort(every, axis=1), axis=0, return_index=True, return_counts=True)
+    single = first[count == 1]
+    return facet[single], every[single]
+
+
+def _all_edges(surface: Surface) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Facet (m,) and corner points (m, 2) of every edge of every facet; in 2D the point twice."""
     facets, ends = [], []
     for kind, of_kind in by_kind(surface):
         corners, nodes = CELLS[kind].corners, surface.nodes[of_kind].astype(np.int64)
@@ -74,7 +110,4 @@ def _edges(surface: Surface) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
             pairs = [(i, (i + 1) % corners) for i in range(corners)]
         facets += [of_kind] * len(pairs)
         ends += [nodes[:, list(pair)] for pair in pairs]
-    facet, every = np.concatenate(facets), np.concatenate(ends)
-    _, first, count = np.unique(np.sort(every, axis=1), axis=0, return_index=True, return_counts=True)
-    single = first[count == 1]
-    return facet[single], every[single]
+    return np.concatenate(facets), np.concatenate(ends)

@@ -16,7 +16,8 @@ from abut.decks.rings import in_rings
 from abut.decks.solid_blocks import by_block, free_numbers, sections_of, with_solids
 from abut.decks.thin import renamed
 from abut.io.deck.reasons import DeckError, Place
-from abut.io.deck.record import Block, Coupling, Deck, Equation, Numbers, Section, Thin
+from abut.io.deck.record import Block, Coupling, Deck, Equation, Numbers, Section
+from abut.io.deck.thin_record import Thin
 from abut.mesh.thin.beams import Beam, Sections, expand_beams
 
 CARD = "*BEAM SECTION"

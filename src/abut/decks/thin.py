@@ -11,9 +11,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.decks.layers import by_section, edges_of, with_layers
 from abut.decks.solid_blocks import free_numbers, sections_of, with_solids
 from abut.io.deck.reasons import DeckError
-from abut.io.deck.record import Block, Coupling, Deck, Faces, Numbers, Prescribed, Section, Spring, Thin
+from abut.io.deck.record import Block, Coupling, Deck, Faces, Numbers, Prescribed, Section, Spring
+from abut.io.deck.thin_record import Thin
 from abut.mesh.thin.shells import Expanded, Shell, expand
 
 Vector = NDArray[np.float64]
@@ -23,6 +25,7 @@ def with_thick_shells(deck: Deck, finite: bool) -> Deck:
     """The deck with its shells, of quadratic elements, expanded. ``finite``: at large displacements.
 
     Raises InputError for shells without a thickness or with cells that have no area, and for springs on their nodes."""
+    deck = by_section(deck)
     blocks = [block for block in deck.blocks if block.type.thin == "shell"]
     if not blocks:
         return deck
@@ -33,6 +36,7 @@ def with_thick_shells(deck: Deck, finite: bool) -> Deck:
             _thickness(deck, block),
             _offsets(deck, block),
             _normals(deck, block),
+            edges_of(_section_of(deck, block)[0]),
         )
         for block in blocks
     ]
@@ -48,17 +52,17 @@ def with_thick_shells(deck: Deck, finite: bool) -> Deck:
 
 
 def _with_solids(deck: Deck, blocks: list[Block], solid: Expanded, finite: bool) -> Deck:
-    number = free_numbers(deck, len(solid.points), [cells for _, cells in solid.cells])
+    number = free_numbers(deck, len(solid.points), [rows for _, cells in solid.cells for rows in cells])
     thin = _thin(deck, solid, number)
     if finite:
         _check_turned(deck, thin)
     knots = [node for node, each in thin.items() if each.along is None]
     stand_for = _every(deck, solid, number)
-    deck = with_solids(deck, "shell", solid.points, number, solid.cells)
+    deck = with_solids(deck, "shell", solid.points, number, [(kind, cells[0]) for kind, cells in solid.cells])
+    deck = with_layers(deck, blocks, [number[cells[1:]] for _, cells in solid.cells])
     deck = replace(deck, thin={node: each for node, each in thin.items() if node not in knots})
-    at = np.einsum(
-        "nd,nd->n", solid.points - np.repeat(deck.points[solid.node], 3, axis=0), np.repeat(solid.normal, 3, axis=0)
-    )
+    apart = solid.points - deck.points[solid.node[solid.director]]
+    at = np.einsum("nd,nd->n", apart, solid.normal[solid.director])
     heights = dict(zip(number.tolist(), at.tolist()))
     deck = renamed(deck, stand_for, heights)
     couplings = [_knot(deck, blocks[0], node, stand_for[node]) for node in knots]
@@ -72,24 +76,25 @@ def _knot(deck: Deck, block: Block, node: int, nodes: Numbers) -> Coupling:
 def _thin(deck: Deck, solid: Expanded, number: Numbers) -> dict[int, Thin]:
     """What stands for each node of the deck that shells have."""
     result: dict[int, Thin] = {}
-    for i in range(len(solid.node)):
-        node = int(deck.nodes[solid.node[i]])
-        ends = (int(number[3 * i]), int(number[3 * i + 2]))
+    start = np.searchsorted(solid.director, np.arange(len(solid.node) + 1))
+    for i, own in enumerate(solid.node.tolist()):
+        node, here = int(deck.nodes[own]), slice(start[i], start[i + 1])
+        each = [(n, share) for n, share in zip(number[here].tolist(), solid.share[here].tolist()) if n >= 0]
+        ends = (each[0][0], each[-1][0])
         if node in result:
             result[node] = Thin((*result[node].nodes, *ends))
         else:
             x, y, z = solid.normal[i].tolist()
-            middle = max(int(number[3 * i + 1]), 0)
-            result[node] = Thin(ends, (x, y, z), float(solid.thickness[i]), middle)
+            result[node] = Thin(ends, (x, y, z), float(solid.thickness[i]), tuple(each[1:-1]))
     return result
 
 
 def _every(deck: Deck, solid: Expanded, number: Numbers) -> dict[int, Numbers]:
     """All nodes through the thickness at each node of the deck that shells have."""
     result: dict[int, list[int]] = {}
-    for i in range(len(solid.node)):
-        through = number[3 * i : 3 * i + 3]
-        result.setdefault(int(deck.nodes[solid.node[i]]), []).extend(through[through >= 0].tolist())
+    used = number >= 0
+    for node, each in zip(deck.nodes[solid.node[solid.director[used]]].tolist(), number[used].tolist()):
+        result.setdefault(node, []).append(each)
     return {node: np.array(nodes, np.int64) for node, nodes in result.items()}
 
 

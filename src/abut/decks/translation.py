@@ -35,7 +35,7 @@ from abut.decks.tied_nodes import SAME_WAY, looks, with_ties_by_node
 from abut.detection import add_surfaces, find_contacts
 from abut.errors import InputError
 from abut.io.deck import read_deck
-from abut.io.deck.elements import FACES, SHELLS
+from abut.io.deck.elements import BEAMS, FACES, SHELLS
 from abut.io.deck.groups import Groups, Piece, pieces
 from abut.io.deck.nodal_constraints import bonds
 from abut.io.deck.pretension import cut
@@ -126,7 +126,8 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     notes += mesh.notes
     mesh, contacts = adjusted(mesh, deck, groups, contacts, notes)
     check_mesh(mesh)
-    mesh = replace(mesh, shells=tuple(name for name, piece in parts.items() if set(piece.codes) <= SHELLS))
+    shells, beams = (tuple(n for n, piece in parts.items() if set(piece.codes) <= codes) for codes in (SHELLS, BEAMS))
+    mesh = replace(mesh, shells=shells, beams=beams)
     for contact, pair in zip(contacts, deck.pairs):
         with reasons.gathered():
             _check_sides(mesh, contact, pair)

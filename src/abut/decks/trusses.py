@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from abut.decks.solid_blocks import by_block, free_numbers, sections_of, with_solids
 from abut.decks.thin import renamed
 from abut.io.deck.reasons import DeckError
-from abut.io.deck.record import Block, Deck, Equation, Numbers, Thin
+from abut.io.deck.record import Block, Deck, Equation, Numbers
+from abut.io.deck.thin_record import Thin
 from abut.mesh.thin.beams import COUNT, Beam, expand_beams
 
 MEAN = (-1.0 / 12.0,) * 4 + (1.0 / 3.0,) * 4  # over a face of eight nodes: corners, middles of sides

@@ -16,7 +16,7 @@ from abut.mesh.mesh import Mesh
 from abut.mesh.read import read_raw
 from abut.model.conditions import TURNS
 from abut.thin.quadratic import sort
-from abut.thin.records import Beam, MidForce, MidSupport, Shell, Thick, Thin
+from abut.thin.records import Beam, MidForce, MidSupport, Shell, Thick, Thin, bodies_of
 
 AUTO = "auto"
 FORCE = "nodal-force"
@@ -64,7 +64,8 @@ def with_thin(file: JobFile, folder: Path, mesh: Mesh | None) -> Parts:
         file.model.kinematics != "small",
         (held, pushed),
     )
-    return Parts(thick, frozenset(held), frozenset(pushed), sections)
+    bodies = {body: section for name, section in sections.items() for body in bodies_of(name, section)}
+    return Parts(thick, frozenset(held), frozenset(pushed), bodies)
 
 
 def thin_of(table: MeshTable) -> dict[str, Thin]:

@@ -37,6 +37,8 @@ class Mesh(MeshRecord):
         What was changed when the mesh was read, in words.
     shells : tuple of str
         Bodies that are shells made solid (``thicken``, decks).
+    beams : tuple of str
+        Bodies that are beams or trusses made solid.
 
     Raises
     ------

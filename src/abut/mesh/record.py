@@ -28,6 +28,7 @@ class MeshRecord:
     axisymmetric: bool = False
     notes: tuple[str, ...] = ()
     shells: tuple[str, ...] = ()  # bodies that are shells made solid: their cells go once through the thickness
+    beams: tuple[str, ...] = ()  # bodies that are beams and trusses made solid: hex20 one behind the other
 
     def __post_init__(self) -> None:
         points = checks.numbers(self.points, "mesh: points", (None, None))

@@ -19,7 +19,7 @@ from abut.io.atomic import write_text
 from abut.io.names import file_labels
 from abut.io.versions import versions
 from abut.io.vtu import write_vtu
-from abut.output import forces, frd, probes
+from abut.output import forces, frd, probes, thin
 from abut.output.contact_rows import (
     OF_CONTACT,
     contact_summary,
@@ -37,7 +37,7 @@ from abut.output.lock import Lock
 from abut.output.modes import modes_summary, names, write_modes
 from abut.output.options import EVERYTHING, Output, single
 from abut.report import Origin, write_report
-from abut.solution import PenetrationResult, PreloadResult, Solution, Step, mid_surface
+from abut.solution import PenetrationResult, PreloadResult, Solution, Step
 from abut.solution.grids import contact_grid
 from abut.solution.load_factor import load_factors
 from abut.types import Json
@@ -55,7 +55,7 @@ def write(
 
     report.html, summary.json, history.csv, forces.csv, run.jsonl; fields.pvd with a VTU file a step; contact_NAME.pvd
     likewise for each contact; probe_NAME.csv for each probe; modes.csv and modes.vtu where the model asks for modes;
-    fields.frd where ``output`` asks for it.
+    fields.frd where ``output`` asks for it; shells.pvd, and beams.pvd with beams.csv, where there are any.
 
     Parameters
     ----------
@@ -144,10 +144,7 @@ def write_steps(
             continue
         if output.bodies:
             fields(folder, solution.model, step, output)
-        if output.bodies and solution.model.mesh.shells:
-            grid = single(mid_surface.grid(solution.model.mesh, step, solution.model.small_strains))
-            path = folder / _shell_file(step)
-            write_vtu(path, grid.points, grid.blocks, grid.point_data, grid.cell_data, raw=True, small=output.small)
+            thin.write_step(folder, solution.model, step, output)
         for contact, name in zip(step.contacts, _contact_files(step)) if output.contacts else ():
             grid = single(contact_grid(step, contact))
             path = folder / name
@@ -164,12 +161,14 @@ def write_index(folder: Path, solution: Solution, output: Output, final: bool = 
     end = solution.model.solve.end
     if output.bodies:
         _write_collection(folder, "fields", shown, end, [found_name(folder, step.number) for step in shown])
-        if solution.model.mesh.shells:
-            _write_collection(folder, "shells", shown, end, [_shell_file(step) for step in shown])
+        for kind in thin.kinds(solution.model):
+            _write_collection(folder, kind, shown, end, [thin.file_of(kind, step) for step in shown])
     files = [_contact_files(step) for step in shown]
     for index, label in enumerate(_contact_labels(solution.steps[-1]) if output.contacts else ()):
         _write_collection(folder, label, shown, end, [names[index] for names in files])
     write_text(folder / forces.FILE, forces.table(solution))
+    if thin.TABLE in _files(solution, shown, output):
+        write_text(folder / thin.TABLE, thin.table(solution))
     for index, name in enumerate(probes.table_names([probe.name for probe in solution.model.probes])):
         write_text(folder / name, probes.table(solution.steps, index, solution.model.probes[index].steps))
     write_text(folder / "history.csv", _history(solution))
@@ -228,7 +227,7 @@ def status(solution: Solution) -> str:
 def is_written(folder: Path, solution: Solution, step: Step, output: Output = EVERYTHING) -> bool:
     """Whether all files of a step are there that ``output`` names."""
     names = _contact_files(step) if output.contacts else []
-    names += [_shell_file(step)] if output.bodies and solution.model.mesh.shells else []
+    names += [thin.file_of(kind, step) for kind in thin.kinds(solution.model)] if output.bodies else []
     whole = is_whole(folder, step.number) or not output.bodies
     return whole and all((folder / name).is_file() for name in names)
 
@@ -236,16 +235,12 @@ def is_written(folder: Path, solution: Solution, step: Step, output: Output = EV
 def _files(solution: Solution, shown: Sequence[Step], output: Output) -> list[str]:
     """Names of all files of contacts, in the steps shown, and of probes."""
     tables = probes.table_names([probe.name for probe in solution.model.probes])
-    if output.bodies and solution.model.mesh.shells:
-        tables += ["shells.pvd", *(_shell_file(step) for step in shown)]
+    if output.bodies:
+        tables += thin.files(solution.model, shown)
     if not output.contacts:
         return tables
     collections = [f"{label}.pvd" for label in _contact_labels(solution.steps[-1])]
     return [*tables, *collections, *(name for step in shown for name in _contact_files(step))]
-
-
-def _shell_file(step: Step) -> str:
-    return f"shells_{step.number:04d}.vtu"
 
 
 def _contact_labels(step: Step) -> list[str]:

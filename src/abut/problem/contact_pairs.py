@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from abut.bodies.mirror import mirrors
 from abut.cells import CELLS
 from abut.contact.coupling import Couple, Coupling, couple, default_reach
-from abut.contact.flush_edges import FlushEdges
+from abut.contact.flush_edges import FlushEdges, second_order
 from abut.contact.geometry import beside_others, facet_sizes, full_moments
 from abut.contact.pressure_space import (
     DUAL_P1,
@@ -19,7 +19,7 @@ from abut.contact.pressure_space import (
     reduce,
     with_plain_facets,
 )
-from abut.contact.rim import Rim, ends_on_target, goes_on, rim, rim_of_sides
+from abut.contact.rim import Rim, body_goes_on, ends_on_target, goes_on, rim, rim_of_sides
 from abut.contact.self_contact import lies_deep, with_kin
 from abut.contact.shared_points import Functions, functions, one_each
 from abut.contact.sides import Sides
@@ -117,9 +117,11 @@ def pair(
     constant, varying = offsets(model, contact)
     border = rim(contactor)
     beyond, sides_end = goes_on(contactor, border, target, reach), rim_of_sides(contactor)
-    inside = None if space.ordinary else _interior(contactor, coupling, border, beyond)
-    interior = inside if space.name == DUAL_P1 else None
-    flush = None if inside is None or model.finite else FlushEdges.of(contactor, border, inside)
+    interior = _interior(contactor, coupling, border, beyond) if space.name == DUAL_P1 else None
+    flush = None
+    if not (space.ordinary or model.finite):
+        smooth = body_goes_on(model.mesh, contactor, border, beyond & second_order(contactor)[border.facet])
+        flush = FlushEdges.of(contactor, border, ~beyond | smooth)
     planes = planes_of(model, contactor, sides_end, goes_on(contactor, sides_end, target, reach), constraints)
     own_pair = Pair(
         contact, contactor, target, coupling, space, rows, free,

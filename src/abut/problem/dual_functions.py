@@ -172,10 +172,11 @@ def ordinary_now(
     whole: (n_facets,) covered share; closed: (n_functions,) bool; near: a length, how far apart the surfaces may be; known:
     where they were so far, as the result."""
     border = rim(contactor)
-    edge = ends_on_target(contactor, border, goes_on(contactor, border, target, near))
-    interior = (whole > 1.0 - WHOLE) & ~edge & ~beside_others(contactor)
-    flush = FlushEdges.of(contactor, border, interior)
+    beyond = goes_on(contactor, border, target, near)
+    flush = FlushEdges.of(contactor, border, ~beyond)
     result = flush.facets(space, closed, None if known is None else known != 0.0)
     if space.name == DUAL_P1:
+        edge = ends_on_target(contactor, border, beyond)
+        interior = (whole > 1.0 - WHOLE) & ~edge & ~beside_others(contactor)
         result = result | inner_facets(space, contactor, interior, closed)
     return result.astype(float)

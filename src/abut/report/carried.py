@@ -1,8 +1,8 @@
-"""Tables of the report about what bolts carry and how far fluids have got, where there are any."""
+"""Tables of the report about what bolts, shells and beams carry and how far fluids have got, where there are any."""
 
 from __future__ import annotations
 
-from abut.report import penetrations, preloads
+from abut.report import penetrations, preloads, thin
 from abut.solution import Solution
 
 
@@ -17,4 +17,4 @@ def carried_tables(solution: Solution) -> list[tuple[list[str], list[list[str]],
     if solution.model.penetrations:
         rows = penetrations.penetration_rows(solution)
         found.append((penetrations.HEAD, rows, "How far fluids have got into contacts, and what they exert"))
-    return found
+    return found + thin.thin_tables(solution)

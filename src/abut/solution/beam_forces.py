@@ -99,20 +99,29 @@ def beam_forces(solution: Solution, body: str, step: int = -1) -> BeamForces:
     if not -len(solution.steps) <= step < len(solution.steps):
         raise InputError(f"beam_forces: step: there are {len(solution.steps)} steps, got {step}")
     rows, section = _sections(model.mesh, body)
-    _check_known(model, body)
+    why = unknown(model, body)
+    if why:
+        raise InputError(f"beam_forces: body {body!r} {why}")
     return _summed(model, solution.steps[step], body, rows, section)
 
 
-def _check_known(model: Model, body: str) -> None:
-    """Raise InputError where stresses depend on more than the displacement."""
-    where = f"beam_forces: body {body!r}"
+def unknown(model: Model, body: str) -> str:
+    """Why the forces of a beam are not known, empty where they are: stresses depend on more than the displacement."""
     if body not in model.materials:
-        raise InputError(f"{where} has no material")
+        return "has no material"
     if len(model.materials[body].initial(1)[0]):
-        raise InputError(f"{where}: its material has a history, which the solution does not keep")
+        return "has a material with a history, which the solution does not keep"
     heated = any(isinstance(load, Temperature) for load in model.loads)
     if heated or any(solid.temperature for solid in model.solids if solid.body == body):
-        raise InputError(f"{where} is heated; forces of beams are known without temperatures")
+        return "is heated; forces of beams are known without temperatures"
+    return ""
+
+
+def of_step(model: Model, step: Step, body: str) -> tuple[BeamForces, Numbers]:
+    """The same of a step of a beam whose forces are known, and the sections (c, 2) at the ends of its cells."""
+    rows, section = _sections(model.mesh, body)
+    starts, ends = (section[rows[:, 1] == which] for which in (START, END))  # both in the order of the cells
+    return _summed(model, step, body, rows, section), np.unique(np.stack([starts, ends], axis=1), axis=0)
 
 
 def _sections(mesh: MeshRecord, body: str) -> tuple[Numbers, Numbers]:

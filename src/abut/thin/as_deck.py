@@ -18,6 +18,7 @@ from abut.io.deck.record import (
     Elastic,
     Expansion,
     Increments,
+    Layer,
     Material,
     Prescribed,
     Section,
@@ -68,7 +69,9 @@ def as_deck(parts: Sorted, sections: Mapping[str, Thin], where: str) -> Deck:
 
 def _section(name: str, section: Thin, ids: Numbers) -> Section:
     if isinstance(section, Shell):
-        return Section(name, ids, NOTHING, section.thickness, PLACE, offset=section.offset)
+        each = section.thickness / (sum(section.layers) or 1.0)
+        layers = tuple(Layer(each * part, NOTHING) for part in section.layers)
+        return Section(name, ids, NOTHING, section.thickness, PLACE, offset=section.offset, layers=layers)
     (x, y, z), (first, second) = section.direction, section.offsets
     radius = (section.radius or 0.0) * (1.0 if section.wall else EVEN)
     a, b = section.widths or (2.0 * radius,) * 2

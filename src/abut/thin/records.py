@@ -25,24 +25,31 @@ class Shell:
     offset : float
         Of the mesh from the middle of the shell along the normal, over the thickness: 0.5 makes the mesh its positive side,
         -0.5 its negative one. The normal is the one about which the nodes of a cell turn counterclockwise.
+    layers : sequence of float
+        Of a laminate, how thick its layers are beside each other, from the negative side: each becomes a body of its own,
+        NAME-layer1 and so on, with a material of its own. One body where left out.
 
     Raises
     ------
     InputError
-        For a thickness that is not above 0, and for what is no number.
+        For a thickness, or layers, that are not above 0, and for what is no number.
 
     Examples
     --------
     >>> import abut
     >>> sheet = abut.Shell(1.5, offset=0.5)  # the mesh is the side that its normals point away from
+    >>> plies = abut.Shell(1.0, layers=(1, 2, 1))  # 0.25, 0.5 and 0.25 thick
     """
 
     thickness: float
     offset: float = 0.0
+    layers: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         checks.positive(self.thickness, "thickness")
         checks.finite(self.offset, "offset")
+        layers = checks.listed(self.layers, "layers", "numbers")
+        object.__setattr__(self, "layers", tuple(checks.positive(layer, "layers") for layer in layers))
 
 
 @dataclass(frozen=True)
@@ -104,6 +111,13 @@ class Beam:
 
 
 Thin = Shell | Beam
+
+
+def bodies_of(name: str, section: Thin) -> tuple[str, ...]:
+    """The bodies that a section's group becomes."""
+    if isinstance(section, Beam) or not section.layers:
+        return (name,)
+    return tuple(f"{name}-layer{i}" for i in range(1, len(section.layers) + 1))
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.cells import CELLS
+from abut.decks.layers import stacked
 from abut.io.deck.elements import FACES
 from abut.io.deck.record import Block
 from abut.mesh.facets import row_codes
@@ -22,9 +23,11 @@ NONE = np.empty((0, 2), np.int64)
 
 
 def sides(
-    parts: Sorted, sections: Mapping[str, Thin], blocks: Mapping[str, Block], ids: Mapping[str, Numbers]
-) -> dict[str, Numbers]:
-    """Rows (n, 2) of each surface. blocks: of the solids, as ``as_deck`` calls them."""
+    parts: Sorted, sections: Mapping[str, Thin], blocks: Mapping[str, Block], ids: Mapping[str, Numbers],
+    stacks: Mapping[int, tuple[int, ...]],
+) -> dict[str, Numbers]:  # fmt: skip
+    """Rows (n, 2) of each surface. blocks: of the solids, of layers the lowest ones, as ``as_deck`` calls them; stacks: all
+    solids of those with layers, by the lowest one."""
     result: dict[str, Numbers] = {}
     shells = [
         (f"{name}:{kind}", kind, cells)
@@ -55,7 +58,20 @@ def sides(
             elif kind != "point":
                 for word, face in (("spos", SPOS), ("sneg", SNEG)):
                     _add(result, f"{name}.{word}", _of_cells(shells, blocks, cells, kind, face))
-    return result
+    return {name: _outer(rows, blocks, stacks) for name, rows in result.items()}
+
+
+def _outer(rows: Numbers, blocks: Mapping[str, Block], stacks: Mapping[int, tuple[int, ...]]) -> Numbers:
+    """The same of all layers: of faces at edges, and of the last one for those of the positive side."""
+    if not stacks:
+        return rows
+    kinds = {number: block.type.kind for block in blocks.values() for number in block.ids.tolist()}
+    found = [
+        (n, facet)
+        for number, facet in rows.tolist()
+        for n in stacked(np.array([number]), FACES[kinds[number]].index(facet) + 1, stacks).tolist()
+    ]
+    return np.array(found, np.int64)
 
 
 def _add(result: dict[str, Numbers], name: str, rows: Numbers) -> None:

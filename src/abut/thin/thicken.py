@@ -28,7 +28,7 @@ from abut.mesh.mesh import Mesh
 from abut.mesh.read import build, read_raw
 from abut.thin.as_deck import PLACE, Value, as_deck, prescribed
 from abut.thin.quadratic import Sorted, sort
-from abut.thin.records import MOTIONS, Beam, MidForce, MidSupport, Shell, Thick, Thin
+from abut.thin.records import MOTIONS, Beam, MidForce, MidSupport, Shell, Thick, Thin, bodies_of
 from abut.thin.sides import sides
 
 Numbers = NDArray[np.int64]
@@ -112,8 +112,9 @@ def made_solid(
     solid = groups.raw()
     mesh = build(Mesh, RawMesh(solid.points, {**parts.others, **solid.groups}, raw.notes), where)
     check_mesh(mesh)
-    shells = tuple(name for name, section in sections.items() if isinstance(section, Shell))
-    return Thick(replace(mesh, shells=shells), holding, bonded, given, tuple(joined))
+    shells = tuple(n for name, part in sections.items() if isinstance(part, Shell) for n in bodies_of(name, part))
+    beams = tuple(name for name, section in sections.items() if isinstance(section, Beam))
+    return Thick(replace(mesh, shells=shells, beams=beams), holding, bonded, given, tuple(joined))
 
 
 def _groups(deck: Deck, parts: Sorted, sections: Mapping[str, Thin]) -> Groups:
@@ -122,13 +123,16 @@ def _groups(deck: Deck, parts: Sorted, sections: Mapping[str, Thin]) -> Groups:
     for name in parts.others:
         groups.free_name(name)
     blocks: dict[str, Block] = {}
-    for block in deck.blocks:
+    upper = [number for stack in deck.layers.values() for number in stack[1:]]
+    for block in (block for block in deck.blocks if not np.isin(block.ids, upper).any()):
         first = blocks.get(block.code)
         blocks[block.code] = replace(first, ids=np.concatenate([first.ids, block.ids])) if first else block
     ids = {s.name: s.elements for s in deck.sections}
-    for name in sections:
-        groups.body(name, ids[name])
-    for name, rows in sides(parts, sections, blocks, ids).items():
+    for name, section in sections.items():
+        for body in bodies_of(name, section):
+            groups.body(body, ids[body])
+    whole = {name: ids[bodies_of(name, section)[0]] for name, section in sections.items()}
+    for name, rows in sides(parts, sections, blocks, whole, deck.layers).items():
         groups.new_surface(rows, name)
     for name in parts.on:
         nodes = np.intersect1d(deck.node_sets[name], groups.used)

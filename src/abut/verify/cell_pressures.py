@@ -14,6 +14,7 @@ from abut.cells import CELLS
 from abut.dofs import dofs_at
 from abut.mesh.mesh import Mesh
 from abut.mesh.quadrature import stiffness_rule
+from abut.types import Sparse
 from abut.verify.norms import h1_matrix
 
 Array = NDArray[np.float64]
@@ -35,12 +36,17 @@ def continuous_inf_sup(mesh: Mesh, free: NDArray[np.bool_], length: float = 1.0)
     block = next(block for block in mesh.blocks if block.kind == KIND)
     corner, body = numbered(block.nodes, np.zeros(len(block.nodes), dtype=np.int64))
     of = CornerPressures(np.ascontiguousarray(mesh.points), block.nodes, np.arange(len(corner)), corner, (), body)
-    divergence = sp.diags(of.volume) @ of.at_rest.rows.tocsr()
+    divergence, mass = continuous_products(of)
+    return _smallest(mesh, divergence, mass, free, length)
+
+
+def continuous_products(of: CornerPressures) -> tuple[Sparse, Array]:
+    """int q div v (n_corners, dim n_points) and int q q (n_corners, n_corners), the q linear between corners."""
     linear = linear_functions(of.rule[0])
     products = np.einsum("cq,qv,qw->cvw", of.point_volumes, linear, linear)
     mass = np.zeros((of.count,) * 2)
-    np.add.at(mass, (corner[:, :, None], corner[:, None, :]), products)
-    return _smallest(mesh, divergence, mass, free, length)
+    np.add.at(mass, (of.corner[:, :, None], of.corner[:, None, :]), products)
+    return sp.diags(of.volume) @ of.at_rest.rows.tocsr(), mass
 
 
 def _smallest(mesh: Mesh, divergence: sp.spmatrix, mass: Array, free: NDArray[np.bool_], length: float) -> float:

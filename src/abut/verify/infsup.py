@@ -23,6 +23,7 @@ from abut.problem.constraints import Constraints, supports
 from abut.problem.contact_pairs import pairs, with_plain_functions
 from abut.problem.pair import Pair
 from abut.types import Sparse
+from abut.verify.cell_pressures import continuous_products
 from abut.verify.norms import facet_scale, h1_matrix, trace_norm
 from abut.verify.trace import trace_space
 
@@ -42,7 +43,9 @@ class InfSupLevel:
     """One mesh: ``space``, what was measured; number of multipliers, typical facet size h (length), the inf-sup constant in
     both pressure norms
     (``trace``: H^-1/2; ``mesh``: h M), and how many pressures no displacement feels (beta below 1e-6; among more
-    multipliers than ``DENSE`` no more than two are looked for)."""
+    multipliers than ``DENSE`` no more than two are looked for). cells: the constant of contact pressures (``trace``) and
+    continuous pressures of mixed tet10 cells (L2) together, theory (P8); None without such cells, or where pressures are
+    more than ``DENSE``."""
 
     contact: str
     space: str
@@ -51,6 +54,7 @@ class InfSupLevel:
     trace: float
     mesh: float
     spurious: int
+    cells: float | None = None
 
 
 @dataclass(frozen=True)
@@ -78,18 +82,38 @@ def inf_sup(models: Model | Sequence[Model], contact: str | None = None, closed:
     if not sequence:
         raise InputError("inf-sup: no model given")
     levels = tuple(_level(model, contact, closed) for model in sequence)
-    rate = None
-    last = levels[-1]
-    if len(levels) > 1 and min(level.trace for level in levels[-2:]) > SPURIOUS:
-        before = levels[-2]
-        rate = float(np.log(before.trace / last.trace) / np.log(before.size / last.size))
+    rate, last = _rate(levels, [level.trace for level in levels]), levels[-1]
     if last.spurious:
         return InfSup(levels, rate, False, f"fails: {last.spurious} spurious pressure modes")
     if rate is not None and rate > FALLING:
         return InfSup(levels, rate, False, f"fails: beta falls with the mesh like h^{rate:.2f}")
     if last.trace < WEAK:
         return InfSup(levels, rate, False, f"weak: beta = {last.trace:.3f} ({STABLE_PAIRS})")
-    return InfSup(levels, rate, True, f"stable: beta = {last.trace:.3f} ({STABLE_PAIRS})")
+    verdict = _beside_cells(levels) or f"stable: beta = {last.trace:.3f} ({STABLE_PAIRS})"
+    return InfSup(levels, rate, verdict.startswith("stable"), verdict)
+
+
+def _rate(levels: Sequence[InfSupLevel], values: Sequence[float]) -> float | None:
+    """The power of the facets' size with which values fall between the two finest levels; None where there is one, or
+    where one of them is zero."""
+    if len(levels) < 2 or min(values[-2:]) <= SPURIOUS:
+        return None
+    return float(np.log(values[-2] / values[-1]) / np.log(levels[-2].size / levels[-1].size))
+
+
+def _beside_cells(levels: Sequence[InfSupLevel]) -> str:
+    """The verdict on contact whose pressures alone are stable, together with those of cells; empty where there are none."""
+    values = [level.cells for level in levels if level.cells is not None]
+    if len(values) < len(levels):
+        return ""
+    if values[-1] < SPURIOUS:
+        return "fails: pressures of contact and cells together that no displacement feels"
+    rate = _rate(levels, values)
+    if rate is not None and rate > FALLING:
+        return f"fails: beta of contact and cells together falls with the mesh like h^{rate:.2f}"
+    return (
+        f"stable: beta = {levels[-1].trace:.3f} ({STABLE_PAIRS}), together with the pressures of cells {values[-1]:.3f}"
+    )
 
 
 def _level(model: Model, contact: str | None, closed: Closed | None) -> InfSupLevel:
@@ -128,7 +152,21 @@ def _level(model: Model, contact: str | None, closed: Closed | None) -> InfSupLe
         trace=_root(by_trace),
         mesh=_root(by_mesh),
         spurious=int((by_mesh < SPURIOUS**2).sum()),
+        cells=_with_cells(full, operator, trace, model, constraints),
     )
+
+
+def _with_cells(full: Sparse, operator: Sparse, trace: Norm, model: Model, constraints: Constraints) -> float | None:
+    """As in ``InfSupLevel``."""
+    of, n = model.deformable.pressures, operator.shape[0]
+    if of is None or n + of.count > DENSE:
+        return None
+    divergence, mass = continuous_products(of)
+    both = sp.vstack([operator, divergence @ constraints.free], format="csr")
+    compliance = both @ direct.factorized(full, definite=True)(both.T.toarray())
+    norm = scipy.linalg.block_diag(trace(np.eye(n)), mass)
+    values = scipy.linalg.eigh(compliance + compliance.T, norm + norm.T, eigvals_only=True)
+    return _root(values)
 
 
 def _where_closed(built: Pair, model: Model, constraints: Constraints, closed: Closed | None) -> Pair:

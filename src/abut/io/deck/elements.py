@@ -117,7 +117,7 @@ def _beams() -> dict[str, ElementType]:
 
 
 ELEMENTS = _types()
-SHELLS = frozenset(_shells())
+SHELLS, BEAMS = frozenset(_shells()), frozenset(_beams())
 
 # Local facet of ``abut.cells`` for S1, S2, ...
 _TETRAHEDRON = (0, 1, 2, 3)

@@ -3,37 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from itertools import takewhile
 
 import numpy as np
 
 from abut.errors import nearest
-from abut.io.deck.beam_forms import form_of
 from abut.io.deck.cards import Card, Line, as_float, as_integer, key, of
 from abut.io.deck.contact_cards import sides
-from abut.io.deck.elastic_cards import elastic, expansion, orientation
+from abut.io.deck.elastic_cards import elastic, expansion
 from abut.io.deck.mesh_cards import MeshCards
 from abut.io.deck.multipoint_cards import multipoint
 from abut.io.deck.plastic_cards import hardening
 from abut.io.deck.reasons import Reasons
 from abut.io.deck.record import (
+    NO_CONSTANTS,
     CyclicSymmetry,
     Elastic,
     Equation,
     Expansion,
     Material,
     Numbers,
-    Orientation,
     PreTension,
     RigidBody,
-    Section,
     Transform,
 )
 from abut.io.deck.rubber_cards import rubber
 
 EMPTY = np.empty(0, np.int64)
-NO_CONSTANTS = Elastic("isotropic", ((0.0, (0.0, 0.0)),))
 SEVERAL = "values that depend on temperature (several rows) are not supported here; give one row, that which matters"
 
 
@@ -95,111 +91,6 @@ def _density(card: Card) -> float:
         if line.number(0, "density") != result:
             raise line.error(SEVERAL)
     return result
-
-
-def sections(
-    cards: Sequence[Card], mesh: MeshCards, known: Mapping[str, Material] | None, reasons: Reasons
-) -> tuple[Section, ...]:
-    """Sections of solids, shells and beams, without materials where ``known`` is None; later ones override earlier ones for
-    elements that stand in both, as in Abaqus and CalculiX."""
-    result: list[Section] = []
-    axes = {name.upper(): card for card in of(cards, "ORIENTATION") if (name := card.get("NAME"))}
-    for card in (card for card in cards if card.key in _SECTIONS):
-        with reasons.gathered():
-            section = _SECTIONS[card.key](card, mesh, known, axes)
-            result = [replace(s, elements=np.setdiff1d(s.elements, section.elements)) for s in result]
-            result.append(section)
-    return tuple(s for s in result if len(s.elements))
-
-
-def _section(card: Card, mesh: MeshCards, known: Mapping[str, Material] | None, axes: Mapping[str, Card]) -> Section:
-    if card.has("NODAL THICKNESS"):
-        raise card.error("NODALTHICKNESS: a thickness for each node is not supported; give the section one thickness")
-    thickness = card.lines[0].number(0, "thickness", 1.0) if card.lines else 1.0
-    if not thickness > 0.0:
-        raise card.lines[0].error(f"thickness: expected a number > 0, got {thickness:g}")
-    return _of_elements(card, mesh, known, axes, thickness)
-
-
-def _shell_section(
-    card: Card, mesh: MeshCards, known: Mapping[str, Material] | None, axes: Mapping[str, Card]
-) -> Section:
-    """One *SHELL SECTION. Raises InputError for a thickness that is none, and for layers."""
-    if card.has("COMPOSITE"):
-        raise card.error("COMPOSITE: layers are not supported; give one material and the whole thickness")
-    thickness = 0.0
-    if not card.has("NODAL THICKNESS"):
-        line = card.first("thickness")
-        thickness = line.number(0, "thickness")
-        if not thickness > 0.0:
-            raise line.error(f"thickness: expected a number > 0, got {thickness:g}")
-    sides = {"SPOS": 0.5, "SNEG": -0.5}
-    text = (card.get("OFFSET") or "0").upper()
-    offset = sides.get(text, as_float(text))
-    if offset is None:
-        raise card.error(f"OFFSET={text}: expected a number (over the thickness), SPOS or SNEG")
-    return replace(_of_elements(card, mesh, known, axes, thickness), offset=offset)
-
-
-def _beam_section(
-    card: Card, mesh: MeshCards, known: Mapping[str, Material] | None, axes: Mapping[str, Card]
-) -> Section:
-    """One *BEAM SECTION or *BEAM GENERAL SECTION. Raises InputError for what is no such section."""
-    form, widths, walls = form_of(card)
-    axis = (0.0, 0.0, -1.0)
-    if len(card.lines) > 1 and any(card.lines[1].fields):
-        x, y, z = (card.lines[1].number(i, "component of the first direction", 0.0) for i in range(3))
-        if x == y == z == 0.0:
-            raise card.lines[1].error("the first direction has no length; give three components")
-        axis = (x, y, z)
-    offsets = []
-    for name in ("OFFSET1", "OFFSET2"):
-        value = as_float(card.get(name) or "0")
-        if value is None:
-            raise card.error(f"{name}={card.get(name)}: expected a number (over the width)")
-        offsets.append(value)
-    section = _of_elements(card, mesh, known, axes, 0.0)
-    return replace(
-        section,
-        widths=widths,
-        axis=axis,
-        offsets=(offsets[0], offsets[1]),
-        form=form,
-        walls=walls,
-    )
-
-
-def _of_elements(
-    card: Card, mesh: MeshCards, known: Mapping[str, Material] | None, axes: Mapping[str, Card], thickness: float
-) -> Section:
-    name, material = card.need("ELSET"), card.need("MATERIAL")
-    if name.upper() not in mesh.element_sets.sets:
-        raise card.unknown(f"no element set named {name!r}{mesh.element_sets.like(name)}")
-    if known is not None and material.upper() not in known:
-        raise card.unknown(f"no material named {material!r}{nearest(material, [m.name for m in known.values()])}")
-    elements, spelled = mesh.element_sets.sets[name.upper()], mesh.element_sets.spelled[name.upper()]
-    properties = (
-        known[material.upper()] if known is not None else Material(material, NO_CONSTANTS, 0.0, Expansion(), card.place)
-    )
-    return Section(spelled, elements, properties, thickness, card.place, _axes(card, properties, axes))
-
-
-def _axes(card: Card, material: Material, known: Mapping[str, Card]) -> Orientation | None:
-    """Of a section, where its material has directions."""
-    name = card.get("ORIENTATION")
-    if name is None or not material.directed:
-        return None
-    if name.upper() not in known:
-        raise card.unknown(f"no orientation named {name!r}{nearest(name.upper(), known)}")
-    return orientation(known[name.upper()])
-
-
-_SECTIONS = {
-    "SOLIDSECTION": _section,
-    "SHELLSECTION": _shell_section,
-    "BEAMSECTION": _beam_section,
-    "BEAMGENERALSECTION": _beam_section,
-}
 
 
 def equations(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[Equation, ...]:

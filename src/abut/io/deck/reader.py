@@ -22,7 +22,6 @@ from abut.io.deck.model_cards import (
     materials,
     pretension_sections,
     rigid_bodies,
-    sections,
     transforms,
 )
 from abut.io.deck.multipoint_cards import multipoint_notes
@@ -32,6 +31,7 @@ from abut.io.deck.record import Amplitude, Deck, Prescribed
 from abut.io.deck.references import with_references
 from abut.io.deck.removed_elements import absences, gone, without
 from abut.io.deck.repeated import repeated_members, without_repeated
+from abut.io.deck.section_cards import sections
 from abut.io.deck.shell_cards import nodal_thickness, normals
 from abut.io.deck.spring_cards import springs
 from abut.io.deck.step_cards import KIND, amplitudes, initial_temperature, prescribed, split_steps, steps

@@ -13,6 +13,7 @@ from abut.io.deck.elements import ElementType
 from abut.io.deck.mode_cards import Modes
 from abut.io.deck.output_cards import Request
 from abut.io.deck.reasons import Place
+from abut.io.deck.thin_record import Thin
 
 Numbers = NDArray[np.int64]
 Behaviour = tuple[tuple[float, float], ...]  # pairs of overclosure and pressure
@@ -74,6 +75,9 @@ class Elastic:
     rows: Rows
 
 
+NO_CONSTANTS = Elastic("isotropic", ((0.0, (0.0, 0.0)),))
+
+
 @dataclass(frozen=True)
 class Expansion:
     """rows: of one number, or three along the local directions; zero: the temperature from which they count."""
@@ -112,12 +116,22 @@ class Material:
 
 
 @dataclass(frozen=True)
+class Layer:
+    """Of a shell. orientation: None for the global axes."""
+
+    thickness: float
+    material: Material
+    orientation: Orientation | None = None
+
+
+@dataclass(frozen=True)
 class Section:
     """name: the element set; thickness: of plane elements and shells, 0 of shells whose nodes have
     one each; orientation: None for the global axes; offset: of a
     shell, its nodes from the mid-surface along the normal over the thickness. Of a beam: widths along the first
     direction, near ``axis``, and the second, its nodes from the centre over these, its form
-    (``mesh.thin.beams.OUTLINES``) and the walls of a hollow one, at its sides -1, -2, 1, 2."""
+    (``mesh.thin.beams.OUTLINES``) and the walls of a hollow one, at its sides -1, -2, 1, 2. layers: of a shell, from its
+    negative side, whose first one's material stands for all until they are solids."""
 
     name: str
     elements: Numbers
@@ -131,25 +145,7 @@ class Section:
     offsets: tuple[float, float] = (0.0, 0.0)
     form: str = "rectangle"
     walls: tuple[float, ...] = (0.0,) * 4
-
-
-@dataclass(frozen=True)
-class Thin:
-    """Nodes of solids that stand for a node of a shell: its displacement is their mean, its turn that of the line from the
-    first to the last, ``along`` the unit vector from the former to the latter and ``apart`` their distance; of a knot, whose
-    turn is that of a coupling, None. middle: the node between them, which goes with one that is held, or 0. weights: of the
-    nodes in the mean, which add up to 1; all alike where left out."""
-
-    nodes: tuple[int, ...]
-    along: tuple[float, float, float] | None = None
-    apart: float = 0.0
-    middle: int = 0
-    weights: tuple[float, ...] = ()
-
-    @property
-    def shares(self) -> tuple[tuple[int, float], ...]:
-        """The nodes, and the weight of each in the mean."""
-        return tuple(zip(self.nodes, self.weights or (1.0 / len(self.nodes),) * len(self.nodes)))
+    layers: tuple[Layer, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -356,7 +352,7 @@ class Deck:
     outside the steps; initial: node -> temperature; quiet, ignored: see ``supported.Sifted``; small_sliding: a
     contact pair asks for it; thicknesses: of shells at nodes; normals: of shells at (element, node); thin: what stands for
     the nodes of shells once they are expanded; modes: what the last step asks for beside;
-    absences: of elements that go on the way, or come."""
+    absences: of elements that go on the way, or come; layers: of shells of several the solids, from the negative side."""
 
     path: str
     nodes: Numbers
@@ -389,6 +385,7 @@ class Deck:
     requests: tuple[Request, ...] = ()
     modes: Modes | None = None
     absences: tuple[Absence, ...] = ()
+    layers: Mapping[int, tuple[int, ...]] = field(default_factory=dict)
 
     @property
     def references(self) -> frozenset[int]:

@@ -10,7 +10,7 @@ from collections.abc import Collection, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.io.deck.record import Thin
+from abut.io.deck.thin_record import Thin
 from abut.io.deck.time_histories import Course, combine
 
 Vector = NDArray[np.float64]
@@ -21,32 +21,42 @@ Row = tuple[dict[Point, float], Course]
 
 def means(thin: Mapping[int, Thin], wanted: Collection[Point], local: Mapping[int, Vector]) -> list[dict[Point, float]]:
     """Terms whose sum is zero: a node's displacement along an axis (of its own where it has some) less the mean of those
-    that stand for it, and less that of the node in the middle; for those ``wanted``."""
+    that stand for it, and less that of the node in the middle, or what ``straight`` says of those between; for those
+    ``wanted``."""
     result = []
     for node, axis in wanted:
         row = local[node][axis] if node in local else np.eye(3)[axis]
         terms: dict[Point, float] = {(node, axis): 1.0}
         terms |= {(n, k): -c for (n, k), c in _shares(thin[node], row).items()}
         result.append(terms)
-        if middle := thin[node].middle:
-            across = {(middle, int(k)): -float(row[k]) for k in np.flatnonzero(np.abs(row) > SMALL)}
+        inner = thin[node].inner
+        if len(inner) == 1:
+            across = {(inner[0][0], int(k)): -float(row[k]) for k in np.flatnonzero(np.abs(row) > SMALL)}
             result.append({(node, axis): 1.0} | across)
+        else:
+            result += _between(thin[node], row)
     return result
 
 
 def straight(
     thin: Mapping[int, Thin], wanted: Collection[Point], local: Mapping[int, Vector]
 ) -> list[dict[Point, float]]:
-    """Terms whose sum is zero: the displacement along an axis of the node in the middle less the mean of those that stand
-    for the shell's node."""
-    result = []
-    for node, axis in wanted:
-        each = thin[node]
-        if each.middle:
-            row = local[node][axis] if node in local else np.eye(3)[axis]
-            across = {(each.middle, int(k)): float(row[k]) for k in np.flatnonzero(np.abs(row) > SMALL)}
-            result.append(across | {point: -c for point, c in _shares(each, row).items()})
-    return result
+    """Terms whose sum is zero: the displacement along an axis of each node between those that stand for the shell's node
+    less that on the straight line from the first to the last of these."""
+    rows = [(thin[node], local[node][axis] if node in local else np.eye(3)[axis]) for node, axis in wanted]
+    return [terms for each, row in rows for terms in _between(each, row)]
+
+
+def _between(thin: Thin, row: Vector) -> list[dict[Point, float]]:
+    ends = thin.nodes[0], thin.nodes[-1]
+    return [
+        {
+            (n, int(k)): c * float(row[k])
+            for n, c in ((node, 1.0), (ends[0], share - 1.0), (ends[1], -share))
+            for k in np.flatnonzero(np.abs(row) > SMALL)
+        }
+        for node, share in thin.inner
+    ]
 
 
 def spread(

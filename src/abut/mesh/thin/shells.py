@@ -1,4 +1,4 @@
-"""Surface meshes with a thickness as solid cells: hex20 and wedge15, one through the thickness.
+"""Surface meshes with a thickness as solid cells: hex20 and wedge15, one through the thickness or one for each layer.
 
 Each node gets a director: the unit normal of the surface there, the mean over the cells around it whose normals lie within
 20 degrees of each other and which are equally thick. A node with several directors (at a fold, at a step in thickness) is a
@@ -8,7 +8,7 @@ elements" and "Knots", which sets the 20 degrees)."""
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,23 +26,27 @@ SOLID = {"tri6": "wedge15", "quad8": "hex20"}
 @dataclass(frozen=True)
 class Shell:
     """Quadratic cells of one kind (tri6 or quad8) on a surface. cells: (n, k) rows of points; thickness: (n, k) at the nodes
-    of each [length]; offset: (n,) of the nodes from the mid-surface along the normal, over the
-    thickness; normals: (n, k, 3)
-    where they are given, NaN elsewhere."""
+    of each [length]; offset: (n,) of the nodes from the mid-surface along the normal, over the thickness; normals: (n, k, 3)
+    where they are given, NaN elsewhere; layers: (m + 1,) from 0 to 1, where these begin and end over the thickness, from
+    the negative side."""
 
     kind: str
     cells: Numbers
     thickness: Vector
     offset: Vector
     normals: Vector
+    layers: Vector = field(default_factory=lambda: np.array([0.0, 1.0]))
 
 
 @dataclass(frozen=True)
 class Expanded:
-    """Solid cells. points: (3 d, 3), of director i the rows 3 i (bottom), 3 i + 1 (middle) and 3 i + 2 (top); node: (d,) the
-    point it stands on; normal: (d, 3); thickness: (d,); cells: kind and (n, 20 or 15) rows of ``points`` for each shell."""
+    """Solid cells. points: (p, 3), of each director from the bottom to the top, those in the middle of layers too; director:
+    (p,) of each; share: (p,) of the top in where it is between bottom and top; node: (d,) the point that a director stands
+    on; normal: (d, 3); thickness: (d,); cells: for each shell kind and (layers, n, 20 or 15) rows of ``points``."""
 
     points: Vector
+    director: Numbers
+    share: Vector
     node: Numbers
     normal: Vector
     thickness: Vector
@@ -58,18 +62,32 @@ def expand(points: Vector, shells: Sequence[Shell]) -> Expanded:
     given = np.concatenate([g.ravel() for _, g in found])
     thickness = np.concatenate([shell.thickness.ravel() for shell in shells])
     offset = np.concatenate([np.repeat(shell.offset, shell.cells.shape[1]) for shell in shells])
-    director, first = _directors(node, normal, given, thickness, offset)
+    alike = {layers: i for i, layers in enumerate(dict.fromkeys(tuple(shell.layers.tolist()) for shell in shells))}
+    stack = np.concatenate([np.full(shell.cells.size, alike[tuple(shell.layers.tolist())]) for shell in shells])
+    director, first = _directors(node, normal, given, np.column_stack([thickness, offset, stack]))
     count = len(first)
     mean = np.zeros((count, 3))
     np.add.at(mean, director, normal)
     mean /= np.linalg.norm(mean, axis=1, keepdims=True)
-    stands, thick, shift = node[first], thickness[first], offset[first]
-    layers = -shift[:, None] + np.array([-0.5, 0.0, 0.5])
-    at = points[stands][:, None, :] + (thick[:, None] * layers)[:, :, None] * mean[:, None, :]
+    through = [np.concatenate([np.ravel([layers[:-1], _middles(layers)], order="F"), layers[-1:]]) for layers in alike]
+    shares = [through[i] for i in stack[first].tolist()]
+    start = np.cumsum([0, *map(len, shares)])[:-1]
+    column, share = np.repeat(np.arange(count), [len(each) for each in shares]), np.concatenate(shares)
+    stands, thick = node[first], thickness[first]
+    height = (share - 0.5 - offset[first][column]) * thick[column]
+    at = points[stands][column] + height[:, None] * mean[column]
     sizes = np.cumsum([shell.cells.size for shell in shells])[:-1]
-    own = np.split(director, sizes)
-    cells = tuple((SOLID[s.kind], _solid(d.reshape(s.cells.shape))) for s, d in zip(shells, own))
-    return Expanded(at.reshape(-1, 3), stands, mean, thick, cells)
+    own = [start[d].reshape(s.cells.shape) for s, d in zip(shells, np.split(director, sizes))]
+    cells = tuple(
+        (SOLID[s.kind], np.stack([_solid(first + 2 * k) for k in range(len(s.layers) - 1)]))
+        for s, first in zip(shells, own)
+    )
+    return Expanded(at, column, share, stands, mean, thick, cells)
+
+
+def _middles(layers: Sequence[float]) -> Vector:
+    edges = np.array(layers)
+    return np.asarray((edges[1:] + edges[:-1]) / 2.0)
 
 
 def _normals(points: Vector, shell: Shell, which: int) -> tuple[Vector, NDArray[np.bool_]]:
@@ -107,11 +125,9 @@ def slopes_at_nodes(kind: str) -> Vector:
     return np.stack([np.array(monomials(1, 0)).T @ values, np.array(monomials(0, 1)).T @ values], axis=2)
 
 
-def _directors(
-    node: Numbers, normal: Vector, given: NDArray[np.bool_], thickness: Vector, offset: Vector
-) -> tuple[Numbers, Numbers]:
+def _directors(node: Numbers, normal: Vector, given: NDArray[np.bool_], own: Vector) -> tuple[Numbers, Numbers]:
     """The director of each node of a cell, and of each director the first of these that has it. Given normals come first,
-    else the cells in their order."""
+    else the cells in their order. own: (n, 3) thickness, offset, number of the layers, in which those of one are alike."""
     result = np.full(len(node), -1, np.int64)
     firsts: list[int] = []
     order = np.argsort(node, kind="stable")
@@ -122,9 +138,7 @@ def _directors(
             lead = left[0]
             limit = SAME if given[lead] else ALIKE
             close = normal[left] @ normal[lead] > limit
-            thick = np.abs(thickness[left] - thickness[lead]) <= EQUAL * thickness[lead]
-            moved = np.abs(offset[left] - offset[lead]) <= EQUAL
-            mine = close & thick & moved
+            mine = close & (np.abs(own[left] - own[lead]) <= EQUAL * np.array([own[lead, 0], 1.0, 1.0])).all(axis=1)
             mine[0] = True
             result[left[mine]] = len(firsts)
             firsts.append(int(lead))
@@ -132,11 +146,11 @@ def _directors(
     return result, np.array(firsts, np.int64)
 
 
-def _solid(director: Numbers) -> Numbers:
-    """Rows of the expanded points of solid cells; director: (n, 6 or 8) of the nodes of the shell's cells."""
-    corners = director.shape[1] // 2
-    bottom, top = 3 * director, 3 * director + 2
+def _solid(bottom: Numbers) -> Numbers:
+    """Rows of the expanded points of the solid cells of a layer; bottom: (n, 6 or 8) of the points below at the nodes of the
+    shell's cells."""
+    corners = bottom.shape[1] // 2
+    top = bottom + 2
     return np.concatenate(
-        [bottom[:, :corners], top[:, :corners], bottom[:, corners:], top[:, corners:], 3 * director[:, :corners] + 1],
-        axis=1,
+        [bottom[:, :corners], top[:, :corners], bottom[:, corners:], top[:, corners:], bottom[:, :corners] + 1], axis=1
     )

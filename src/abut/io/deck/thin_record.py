@@ -1,0 +1,31 @@
+"""What stands for a node of a shell, beam or truss once these are solids."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+HALF = 1e-9  # of the thickness: a node halfway
+
+
+@dataclass(frozen=True)
+class Thin:
+    """Nodes of solids that stand for a node of a shell: its displacement is their mean, its turn that of the line from the
+    first to the last, ``along`` the unit vector from the former to the latter and ``apart`` their distance; of a knot, whose
+    turn is that of a coupling, None. inner: the nodes between them, which go with those where they are held, and the share
+    of the last in where they are. weights: of the nodes in the mean, which add up to 1; all alike where left out."""
+
+    nodes: tuple[int, ...]
+    along: tuple[float, float, float] | None = None
+    apart: float = 0.0
+    inner: tuple[tuple[int, float], ...] = ()
+    weights: tuple[float, ...] = ()
+
+    @property
+    def middle(self) -> int:
+        """The node halfway between them, 0 where there is none."""
+        return next((node for node, share in self.inner if abs(share - 0.5) < HALF), 0)
+
+    @property
+    def shares(self) -> tuple[tuple[int, float], ...]:
+        """The nodes, and the weight of each in the mean."""
+        return tuple(zip(self.nodes, self.weights or (1.0 / len(self.nodes),) * len(self.nodes)))

@@ -1,0 +1,73 @@
+"""Files of shells on their mid-surfaces and of beams as lines: a VTU file a step, and a table of forces of beams."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Sequence
+from pathlib import Path
+
+from abut.io.vtu import write_vtu
+from abut.model import Model
+from abut.output.options import Output, single
+from abut.solution import Solution, Step, mid_surface
+from abut.solution.beam_lines import forces, grid, known
+from abut.solution.grids import Grid
+
+SHELLS, BEAMS = "shells", "beams"
+TABLE = "beams.csv"
+HEAD = [
+    "step", "time", "beam", "x", "y", "z", "normal_force", "torque", "force_x", "force_y", "force_z", "moment_x", "moment_y",
+    "moment_z",
+]  # fmt: skip
+
+
+def kinds(model: Model) -> list[str]:
+    """What there are files of."""
+    return ([SHELLS] if model.mesh.shells else []) + ([BEAMS] if known(model) else [])
+
+
+def file_of(kind: str, step: Step) -> str:
+    return f"{kind}_{step.number:04d}.vtu"
+
+
+def files(model: Model, steps: Sequence[Step]) -> list[str]:
+    """Names of those of all steps shown, with what tells of them together."""
+    found = [name for kind in kinds(model) for name in (f"{kind}.pvd", *(file_of(kind, step) for step in steps))]
+    return [*found, TABLE] if known(model) else found
+
+
+def write_step(folder: Path, model: Model, step: Step, output: Output) -> None:
+    for kind in kinds(model):
+        of = single(_grid(kind, model, step))
+        write_vtu(
+            folder / file_of(kind, step),
+            of.points,
+            of.blocks,
+            of.point_data,
+            of.cell_data,
+            raw=True,
+            small=output.small,
+        )
+
+
+def _grid(kind: str, model: Model, step: Step) -> Grid:
+    if kind == SHELLS:
+        return mid_surface.grid(model.mesh, step, model.small_strains)
+    return grid(model, step)
+
+
+def table(solution: Solution) -> str:
+    """Forces across the sections of beams, a row for each, of all steps."""
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow(HEAD)
+    for step in solution.steps:
+        time = step.factor * solution.model.solve.end
+        for body, of in forces(solution.model, step).items():
+            parts = zip(of.points, of.normal_force, of.torque, of.force, of.moment)
+            for at, normal, torque, force, moment in parts:
+                numbers = [time, *at, normal, torque, *force, *moment]
+                first, *rest = (f"{value:.9g}" for value in numbers)
+                rows.writerow([step.number, first, body, *rest])
+    return text.getvalue()

@@ -1,0 +1,89 @@
+"""Shells of layers in Python and in job files, against classical laminate theory."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import abut
+from abut.errors import InputError
+from abut.job.load import load_job
+from models.thin import CLAMPED, LENGTH, THICK, WIDTH, E, strip
+
+SOFT = 0.1  # of the stiff layer's modulus
+LAYERS = (1.0, 2.0, 1.0)
+STIFFNESS = WIDTH * E * THICK**3 / 12.0 * (1.0 - 0.5**3 + SOFT * 0.5**3)  # of a soft middle half
+
+
+def tip(solution: abut.Solution) -> float:
+    """Mean deflection of the free end."""
+    far = np.abs(solution.model.mesh.points[:, 0] - LENGTH) < 1e-9
+    return float(solution.displacement[far, 2].mean())
+
+
+@pytest.mark.parametrize("side", ["spos", "sneg"])
+def test_sandwich_under_pressure(side: str, tmp_path: Path) -> None:
+    """1:100, q L^4 / 8 E I, of which shear of the soft middle, G / E = 1 / 20, is 2e-4; ten cells follow a curve of fourth
+    order to h^2."""
+    held = [abut.MidSupport("left", **CLAMPED)]
+    thick = abut.thicken(strip(tmp_path / "a.msh"), {"strip": abut.Shell(THICK, layers=LAYERS)}, held)
+    bodies = [f"strip-layer{i}" for i in (1, 2, 3)]
+    assert list(thick.mesh.bodies) == bodies == list(thick.mesh.shells)
+    laws = [abut.LinearElastic(share * E, 0.0) for share in (1.0, SOFT, 1.0)]
+    solids = [abut.Solid(body, law, integration="reduced") for body, law in zip(bodies, laws)]
+    model = abut.Model(
+        thick.mesh, solids, thick.supports, [abut.Pressure(f"strip.{side}", 1e-4)], equations=thick.equations,
+        couplings=thick.couplings,
+    )  # fmt: skip
+    exact = 1e-4 * WIDTH * LENGTH**4 / (8.0 * STIFFNESS)
+    assert tip(abut.solve(model)) == pytest.approx(-exact if side == "spos" else exact, rel=0.007)
+
+
+def test_faces_and_groups(tmp_path: Path) -> None:
+    """The outer layers have the sides, all of them the edges, and nodes are those through the whole thickness."""
+    mesh = abut.thicken(strip(tmp_path / "a.msh"), {"strip": abut.Shell(THICK, layers=LAYERS, offset=0.5)}).mesh
+    for side, body, height in (("spos", "strip-layer3", 0.0), ("sneg", "strip-layer1", -THICK)):
+        assert set(mesh.surfaces[f"strip.{side}"][:, 0]) == set(mesh.bodies[body])
+        assert mesh.points[mesh.nodes_of(f"strip.{side}")][:, 2] == pytest.approx(height)
+    assert len(mesh.surfaces["strip.edge"]) == 3 * 24
+    assert len(mesh.surfaces["left.edge"]) == 3 * 2
+    heights = sorted(mesh.points[mesh.nodes_of("corner")][:, 2])
+    assert heights == pytest.approx([-1.0, -0.875, -0.75, -0.5, -0.25, -0.125, 0.0])
+
+
+def test_cross_ply_in_a_job_file(tmp_path: Path) -> None:
+    """A couple at the end: w = M L^2 / (2 D11), nothing moving or turning across. Fibres along x outside, across inside;
+    D11 = sum of Q11 (z1^3 - z0^3) / 3."""
+    strip(tmp_path / "a.msh")
+    ply = "young = [140e3, 10e3, 10e3], poisson = [0.3, 0.3, 0.45], shear = [5e3, 5e3, 3.4e3]"
+    path = tmp_path / "job.toml"
+    path.write_text(
+        f"""
+schema = 1
+mesh = {{ file = "a.msh", shells.strip = {{ thickness = 1.0, layers = [1, 2, 1] }} }}
+materials.along = {{ kind = "orthotropic", {ply} }}
+materials.across = {{ kind = "orthotropic", {ply}, axes = {{ x = [0, 1, 0], xy = [-1, 0, 0] }} }}
+solids = [
+  {{ body = "strip-layer1", material = "along" }}, {{ body = "strip-layer2", material = "across" }},
+  {{ body = "strip-layer3", material = "along" }},
+]
+supports = [{{ on = "left", x = 0, z = 0, ry = 0, rz = 0 }}, {{ on = "strip", y = 0, rx = 0 }}]
+loads = [
+  {{ kind = "nodal-force", on = "corner", value = [0, 0, 0.2] }},
+  {{ kind = "nodal-force", on = "right", value = [0, 0, 0.2] }},
+]
+"""
+    )
+    q11, q22 = (young / (1.0 - 0.3**2 * 10e3 / 140e3) for young in (140e3, 10e3))
+    d11 = (q11 * (1.0 - 0.5**3) + q22 * 0.5**3) / 12.0
+    force = 0.2 * 6.0  # five nodes, and one of them twice
+    assert tip(abut.solve(load_job(path).model)) == pytest.approx(force * LENGTH**3 / (3.0 * WIDTH * d11), rel=0.01)
+
+
+def test_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="layers: expected a number > 0"):
+        abut.Shell(1.0, layers=(1.0, 0.0))
+    with pytest.raises(InputError, match="layers: expected a list of numbers"):
+        abut.Shell(1.0, layers=2.0)
