@@ -110,7 +110,7 @@ class OverTemperature(OwnMaterial):
     @property
     def volume_preserving(self) -> bool:  # type: ignore[override]
         """As in ``OwnMaterial``: flow keeps the volume."""
-        return self._flowing is not None
+        return bool(self._metals)
 
     @property
     def symmetric(self) -> bool:  # type: ignore[override]
@@ -120,11 +120,12 @@ class OverTemperature(OwnMaterial):
     @property
     def fields(self) -> Mapping[str, slice]:  # type: ignore[override]
         """As in ``OwnMaterial``."""
-        return FIELDS if self._flowing is not None else {}
+        return FIELDS if self._metals else {}
 
     def initial(self, n: int) -> Array:
         """As in ``Material``."""
-        return np.zeros((n, 0 if self._flowing is None else self._flowing.history))
+        law = self._flowing
+        return np.zeros((n, 0 if law is None else law.history))
 
     @property
     def modulus(self) -> float:
@@ -137,8 +138,9 @@ class OverTemperature(OwnMaterial):
     def at(self, places: Places) -> Material:
         """As in ``LocalMaterial``."""
         now = self.initial_temperature + places.change
-        if self._flowing is not None:
-            return HeatedPlastic(self._flowing, now, self._swelling_alike(places.change), self.modulus)
+        law = self._flowing
+        if law is not None:
+            return HeatedPlastic(law, now, self._swelling_alike(places.change), self.modulus)
         if not now.any() or (now == now[0]).all():
             now = now[:1]
         if self._isotropic:
@@ -150,9 +152,10 @@ class OverTemperature(OwnMaterial):
 
     def compiled(self, finite: bool) -> Compiled | None:
         """As in ``OwnMaterial``: metal that yields."""
-        if self._flowing is None:
+        law = self._flowing
+        if law is None:
             return None
-        return Compiled(HeatedKernel(self._flowing, self.initial_temperature, self._swelling_alike, finite))
+        return Compiled(HeatedKernel(law, self.initial_temperature, self._swelling_alike, finite))
 
     def evaluate(self, strain: Array, history: Array) -> Evaluated:
         """As in ``Material``, at the temperature of the beginning, for axes that are the same everywhere."""
@@ -176,11 +179,15 @@ class OverTemperature(OwnMaterial):
     def _isotropic(self) -> bool:
         return not isinstance(self.materials[0], LocalElastic)
 
-    @cached_property
+    @property
+    def _metals(self) -> list[Plastic]:
+        """What yields."""
+        return [material for material in self.materials if isinstance(material, Plastic)]
+
+    @property
     def _flowing(self) -> J2OverTemperature | None:
-        """Of metal that yields."""
-        metals = [material for material in self.materials if isinstance(material, Plastic)]
-        return between(self.temperatures, metals) if metals else None
+        """Of metal that yields; made anew, so that no record of a model holds on to a compiled object."""
+        return between(self.temperatures, self._metals) if self._metals else None
 
     @property
     def _local(self) -> list[LocalElastic]:

@@ -102,9 +102,7 @@ class Step:
     def advanced(self, system: Linearised, state: State, laws: Sequence[LawRows], accuracy: float) -> State:
         """One Newton step, whose linear system is solved to ``accuracy`` where that is done iteratively."""
         self.prepared = self.solver.prepare(system, self.prepared)
-        return smallest(
-            system, advance(self.prepared, state, yielding(system, laws, self.settings.newton.soft), accuracy)
-        )
+        return smallest(system, advance(self.prepared, state, yielding(system, laws), accuracy))
 
 
 def solve_finite(step: Step, guess: State | None, time: float) -> Found:

@@ -42,9 +42,6 @@ class NewtonSettings:
     bent: float = _of(
         0.2, "facets", "gap up to which a point that presses stays closed for an iteration", "test_opening.py",
     )  # fmt: skip
-    soft: float = _of(
-        1e-6, "of h / E", "how far repeated gaps yield in an iteration", "test_deck_large.py::test_level_faces",
-    )  # fmt: skip
     again: int = _of(
         2, "closings in a step", "after which a point may take the place of another", "test_exchange.py",
     )  # fmt: skip

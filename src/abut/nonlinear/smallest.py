@@ -11,18 +11,18 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
-from abut.problem.laws import LawRows
+from abut.problem.laws import SOFT, LawRows
 from abut.problem.linearised import Linearised
 from abut.solution.state import State
 
 EXACT = 4.0 * float(np.finfo(float).eps)  # of forces, to which the smallest pressures give the same ones: rounding
 
 
-def yielding(system: Linearised, laws: Sequence[LawRows], soft: float) -> list[LawRows]:
+def yielding(system: Linearised, laws: Sequence[LawRows]) -> list[LawRows]:
     """Laws for one iteration: gaps that say the same twice give way to a change of their pressures, so that it is unique.
-    Residuals stay as they are, and with them the solution. soft: over weight h / E, by how much."""
+    Residuals stay as they are, and with them the solution."""
     return [
-        replace(law, by_pressure=(law.by_pressure + soft * law.by_gap @ sp.diags(pair.scale)).tocsr())
+        replace(law, by_pressure=(law.by_pressure + SOFT * law.by_gap @ sp.diags(pair.scale)).tocsr())
         if pair.repeated
         else law
         for pair, law in zip(system.pairs, laws)

@@ -14,7 +14,7 @@ from abut.problem.pair import Pair, PairPoints
 from abut.types import Sparse
 
 Vector = NDArray[np.float64]
-SOFT = 1e-6  # over weight h / E: how far jumps give way to a change of their tractions within one iteration
+SOFT = 1e-6  # over weight h / E: how far jumps, and repeated gaps, give way to their tractions within one iteration
 FAINT = 1e-12  # of a jump over what its traction gives way: a row that hardly sees it holds the traction alone
 
 
