@@ -10,8 +10,8 @@ from abut.nonlinear.pace import Pace, given_pace, pace_of
 from abut.nonlinear.settings import DEFAULT
 
 STEPS = DEFAULT.steps
-FIRST, EASY, GROWTH, SMALLEST = STEPS.first, STEPS.easy, 1.0 / STEPS.shorter, STEPS.smallest
-HARD, SHRINK = 2 * EASY, STEPS.shorter
+FIRST, EASY, GROWTH, SMALLEST = STEPS.first, STEPS.easy, STEPS.growth, STEPS.smallest
+HARD, SHRINK = 2 * EASY, STEPS.shrink
 
 
 def ends(pace: Pace, iterations: int) -> list[float]:

@@ -100,7 +100,7 @@ class Pace:
         end, factor = self.end, self._next(onset)
         assert end is not None
         steps = self._settings
-        length = max(1.0 / steps.points, factor * steps.shorter) * (end - self.time)
+        length = max(1.0 / steps.points, factor * steps.shrink) * (end - self.time)
         if not self._follows or factor >= 0.5 or length < steps.smallest * self._leg:
             return False
         self._curve = self._rounded(length)
@@ -124,7 +124,7 @@ class Pace:
             self._curve = math.inf if free else self._rounded(self._factor(ahead) * taken)
         steps = self._settings
         hard = iterations > 2 * steps.easy
-        factor = 1.0 / steps.shorter if iterations <= steps.easy else steps.shorter if hard else 1.0
+        factor = steps.growth if iterations <= steps.easy else steps.shrink if hard else 1.0
         factor = 2.0 if self._given else factor
         if self._share < 1.0 and landed > 0.0:
             factor = min(factor, max(0.5, math.sqrt(steps.missed / landed)))
@@ -156,7 +156,7 @@ class Pace:
     def _factor(self, onset: Onset) -> float:
         """How much longer the next step is than one with an onset of slip that was taken."""
         longest = 2.0 if onset.shares[0] > self._same else float(self._settings.points)
-        return min(longest, onset.ahead, self._settings.shorter * self._next(onset))
+        return min(longest, onset.ahead, self._settings.shrink * self._next(onset))
 
     def _next(self, onset: Onset) -> float:
         """How much longer a step may be than the one that shows an onset of slip, theory (R21)."""

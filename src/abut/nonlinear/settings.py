@@ -68,8 +68,9 @@ class StepSettings:
         6, "iterations", "up to which the next step is longer; shorter above twice, halved above four times as many",
         "test_pace.py, test_large_sliding.py",
     )  # fmt: skip
-    shorter: float = _of(
-        0.7, "step over the last one", "after a hard step; its inverse after an easy one; of what the onset of slip allows",
+    growth: float = _of(1.5, "step over the last one", "after an easy step", "test_pace.py")
+    shrink: float = _of(
+        0.7, "step over the last one", "after a hard step; of the longest that the onset of slip allows",
         "test_pace.py, test_onset_of_slip.py",
     )  # fmt: skip
     missed: float = _of(
