@@ -155,6 +155,7 @@ def solve_job(
     from abut.output import restart
     from abut.output.fields import write_fields
     from abut.output.parallel import Pieces
+    from abut.output.start import load_start
     from abut.output.stream import Stream
     from abut.report import read_origin
     from abut.solution import Phase
@@ -169,8 +170,11 @@ def solve_job(
     model = restart.description(job.model)
     fields = write_fields if team is None or team.size == 1 else Pieces(team)
     output = job.output.with_frd() if arguments.frd else job.output
-    with Stream(directory, model, arguments.restart, fields, progress, output) as stream:
-        before = stream.resumed
+    if job.start is not None and team is not None and team.size > 1:
+        raise InputError(f"{job.path}: start: steps of another job are taken over on one process only")
+    begun = [] if job.start is None else load_start(job.start.results, job.model, job.start.share)
+    with Stream(directory, model, arguments.restart, fields, progress, output, begun) as stream:
+        before = stream.resumed or begun
         if before:
             progress(restart.last(before))
 
