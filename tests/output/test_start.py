@@ -148,7 +148,7 @@ def test_residual_strain_of_a_bar(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "old, new, said",
+    ("old", "new", "said"),
     [
         ("young = 210e3", "young = 200e3", "of another model"),
         ("cells = [6, 3]", "cells = [5, 3]", "mesh."),
@@ -157,18 +157,19 @@ def test_residual_strain_of_a_bar(tmp_path: Path) -> None:
         ('["assemble", 0.1]', '["assemble", 0.2]', "not in balance"),
         ('["assemble", 1]', '["assemble", 0.9]', "not in balance"),
         ('time = "assemble"', 'time = "load"', "before the end"),
+        ('directory = "b"', 'directory = "a"', "output.directory"),
         ('time = "assemble"', 'time = "later"', "no step named"),
     ],
 )  # fmt: skip
 def test_what_does_not_fit_is_told(
     old: str, new: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """One message, exit status 2; and abut check says it, too, but for the balance."""
+    """One message, exit status 2; and abut check says what of it can be seen before the run."""
     assert run(tmp_path, "a", text("steel", False) + A) == 0
     job = text("steel", True) + LATER + continued("b")
     assert old in job
     assert run(tmp_path, "b", job.replace(old, new)) == 2
     assert said in capsys.readouterr().err
-    if "balance" not in said:
+    if said not in ("not in balance", "output.directory"):
         assert main(["check", str(tmp_path / "b.toml")]) == 2
         assert said in capsys.readouterr().out

@@ -172,6 +172,10 @@ def solve_job(
     output = job.output.with_frd() if arguments.frd else job.output
     if job.start is not None and team is not None and team.size > 1:
         raise InputError(f"{job.path}: start: steps of another job are taken over on one process only")
+    if job.start is not None and job.start.results.resolve() == directory.resolve():
+        raise InputError(
+            f"{job.path}: start.results: that is where this job writes; give output.directory another name"
+        )
     begun = [] if job.start is None else load_start(job.start.results, job.model, job.start.share)
     with Stream(directory, model, arguments.restart, fields, progress, output, begun) as stream:
         before = stream.resumed or begun
