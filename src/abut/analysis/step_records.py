@@ -9,9 +9,12 @@ import numpy as np
 from abut.errors import InputError
 from abut.nonlinear.attempt import Attempt
 from abut.problem.balance import Balance
+from abut.problem.linearised import Linearised
 from abut.problem.problem import ContactProblem
 from abut.solution import Saved, SavedPart
 from abut.solution.state import State
+
+TAKEN = 1e-6  # of forces and pressures: what steps of another job may be off balance; solved ones are at 1e-9 and below
 
 
 def saved_step(parts: Sequence[Attempt], linear: str) -> Saved:
@@ -42,9 +45,30 @@ def restored(saved: Saved, before: State, problem: ContactProblem) -> list[Attem
     attempts = []
     for part, row in zip(parts, rows):
         own = problem.with_ordinary(part.inside) if part.inside.any() else problem
-        balance = Balance.of(own.again(before, part.state), part.state)
+        system = own.again(before, part.state)
+        if saved.taken:
+            require_equilibrium(system, part.state, saved.number)
+        balance = Balance.of(system, part.state)
         attempts.append(
             Attempt(saved.number, part.state, True, row, none, part.inside, part.state.time, balance=balance)
         )
         before = part.state
     return attempts
+
+
+def require_equilibrium(system: Linearised, state: State, number: int) -> None:
+    """Raise InputError unless a state taken over is in balance under the loads, supports and contacts of the model; bodies
+    with small displacements."""
+    forces = np.abs(system.relative(system.unbalanced(state), state.largest.force)).max(initial=0.0)
+    overlap, parts = 0.0, (system.gap(state), state.multipliers, state.closed)
+    for pair, g, p, closed in zip(system.pairs, *(system.split(values) for values in parts)):
+        rows = slice(None) if pair.tied else pair.normal
+        wrong = np.where(closed[rows] | pair.two_way, np.abs(g[rows]), np.maximum(-g[rows], 0.0)) / pair.scale[rows]
+        size = max(state.largest.pressure, float(np.abs(p[rows]).max(initial=0.0)))
+        overlap = max(overlap, float(wrong.max(initial=0.0)) / size if size > 0.0 else 0.0)
+    if max(float(forces), overlap) > TAKEN:
+        raise InputError(
+            f"start: step {number} of the job before is not in balance at time {state.time:.6g} of this one (to "
+            f"{max(float(forces), overlap):.2g}); loads, supports and contacts must be there what they were then: give "
+            "them amplitudes that pass through these values"
+        )

@@ -44,6 +44,7 @@ def _check(arguments: argparse.Namespace) -> int:
     from abut.job.load import DECK
     from abut.job.pairs import write_pairs
     from abut.job.parameters import read_settings
+    from abut.output.start import load_start
 
     try:
         job = load_job(
@@ -54,6 +55,11 @@ def _check(arguments: argparse.Namespace) -> int:
         _print(report, arguments.json)
         return report.status
     report = check(job.model)
+    if job.start is not None:
+        try:
+            load_start(job.start.results, job.model, job.start.share)
+        except AbutError as error:
+            report = Report(in_order([from_error(error, "start"), *report.findings]), report.motions)
     where = "deck" if job.path.suffix.lower() == DECK else "notes"
     found = tuple(Finding("info", where, note) for note in job.notes)
     report = Report(in_order([*report.findings, *sizes_wanted(job.directory), *found]), report.motions)

@@ -165,17 +165,17 @@ def solve_job(
     _check_linear(job)
     for text in (*(f"ignored: {what}" for what in job.ignored), *job.notes):
         progress(text)
-    directory = arguments.output or job.directory
+    directory, size = arguments.output or job.directory, 1 if team is None else team.size
     model = restart.description(job.model)
-    fields = write_fields if team is None or team.size == 1 else Pieces(team)
+    fields = write_fields if team is None or size == 1 else Pieces(team)
     output = job.output.with_frd() if arguments.frd else job.output
-    with Stream(directory, model, arguments.restart, fields, progress, output) as stream:
-        before = stream.resumed
+    begun = _begun(job, directory, size)
+    with Stream(directory, model, arguments.restart, fields, progress, output, begun) as stream:
+        before = stream.resumed or begun
         if before:
             progress(restart.last(before))
 
         def told(solution: Solution) -> Solution:
-            size = 1 if team is None else team.size
             return replace(solution, notes=(*job.notes, *solution.notes), ignored=job.ignored, processes=size)
 
         latest: list[Solution] = []
@@ -206,6 +206,21 @@ def solve_job(
         progress(Phase("writing results"))
         stream.finish(solution, read_origin(job.path, job.text))
     return solution, directory
+
+
+def _begun(job: Job, directory: Path, processes: int) -> list[Saved]:
+    """The steps of another job that a job begins with; directory: where its own results go."""
+    from abut.output.start import load_start
+
+    if job.start is None:
+        return []
+    if processes > 1:
+        raise InputError(f"{job.path}: start: steps of another job are taken over on one process only")
+    if job.start.results.resolve() == directory.resolve():
+        raise InputError(
+            f"{job.path}: start.results: that is where this job writes; give output.directory another name"
+        )
+    return load_start(job.start.results, job.model, job.start.share)
 
 
 def _with_overlaps(solution: Solution, job: Job, progress: Callable[[str], None]) -> Solution:

@@ -41,6 +41,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "rotations": "surfaces, node sets and bodies that turn about an axis; not with small kinematics",
         "probes": "points, lines and sets of nodes whose results are listed for every step",
         "steps": "parts of the time, one after the other, whose names stand for times",
+        "start": "the steps of another job, with which this one begins",
         "frequencies": "natural frequencies of the assembly as it is loaded at the end of the last step",
         "buckling": "linear buckling: factors of the stresses at the end of the last step; kinematics small",
         "solve": "load steps, linear solver, iterations",

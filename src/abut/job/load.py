@@ -20,6 +20,7 @@ from abut.job.material_tables import MATERIALS
 from abut.job.other_names import key_called, kind_said
 from abut.job.parameters import parameters, worked_out
 from abut.job.schema import EquationTable, JobFile, MeshTable
+from abut.job.start import Start
 from abut.job.thin import with_thin
 from abut.job.times import with_shares
 from abut.job.values import values
@@ -66,7 +67,8 @@ DECK = ".inp"
 class Job:
     """A loaded job: the model, where its results go, the file and its text; notes: what was found and chosen, or
     replaced in a deck; ignored: what the user had omitted from a deck; own_laws: of a deck's contacts, by name, which exact
-    contact may replace; output: which VTU files are written; parameters: as they were used."""
+    contact may replace; output: which VTU files are written; parameters: as they were used; start: where the job
+    starts from."""
 
     model: Model
     directory: Path
@@ -78,6 +80,7 @@ class Job:
     own_laws: Mapping[str, PressureOverclosure] = field(default_factory=dict)
     output: Output = field(default_factory=Output)
     parameters: Mapping[str, float] = field(default_factory=dict)
+    start: Start | None = None
 
 
 def load_job(
@@ -112,16 +115,27 @@ def load_job(
     try:
         model, resolved = _model(file, path.parent, refine)
         table = file.output
-        output = Output(table.steps, tuple(table.fields), tuple(table.formats), table.compression)
+        output = Output(table.steps, tuple(table.fields), tuple(table.formats), table.compression, table.restart)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
     said = [
         f"parameter {name} = {value:g}{' (set)' if name in (settings or {}) else ''}" for name, value in names.items()
     ]
+    start = None if file.start is None else Start(path.parent / file.start.results, float(file.start.time))
     steps = acting(model, parts(file.steps, model.solve.end)) if file.steps else ()
+    if start is not None:
+        steps = (f"starts from the steps in {start.results}, up to time {model.solve.said(start.share)}", *steps)
     notes = (*said, *model.mesh.notes, *resolved.notes, *steps)
     return Job(
-        model, path.parent / file.output.directory, path, text, notes, resolved.entries, output=output, parameters=names
+        model,
+        path.parent / file.output.directory,
+        path,
+        text,
+        notes,
+        resolved.entries,
+        output=output,
+        parameters=names,
+        start=start,
     )
 
 

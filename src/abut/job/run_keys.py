@@ -33,7 +33,12 @@ RUN: dict[str, dict[str, str]] = {
         "period": "how long it takes",
         "increments": "load steps in it, of equal length; kinematics finite finds them where none of the steps has any",
     },
+    "StartTable": {
+        "results": "folder of the results of the other job, beside the job file; it was run with output.restart = true",
+        "time": "the time in this job at which the other one's end is: a name of a step, or a number",
+    },
     "OutputTable": {
+        "restart": "whether restart files stay when the run is done, so that another job can start from its end",
         "directory": "folder of the results, beside the job file",
         "steps": "steps with result files: all, last, n for every n-th, or a list of numbers; the last one always has them. "
         "Tables, summary and report have every step",

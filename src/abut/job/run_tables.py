@@ -29,9 +29,17 @@ class StepTable(Table):
     increments: Annotated[int, Field(ge=1)] = 1
 
 
+class StartTable(Table):
+    """steps of another job that this one begins with"""
+
+    results: str
+    time: Time
+
+
 class OutputTable(Table):
     directory: str = "results"
     steps: int | list[int] | Annotated[str, OneOf(STEPS)] = "all"
     fields: list[Annotated[str, OneOf(FIELDS)]] = list(USUAL)
     formats: list[Annotated[str, OneOf(FORMATS)]] = [VTU]
     compression: Annotated[str, OneOf(COMPRESSIONS)] = FAST
+    restart: bool = False

@@ -32,6 +32,8 @@ def with_shares(data: Json) -> Json:
     if not _is_number(end) or not end > 0.0 or (end == 1.0 and not steps):
         return data
     result: Json = _with_times(data, lambda time: _share(time, end, named if steps else {}))
+    if isinstance(start := data.get("start"), Mapping) and "time" in start:
+        result["start"] = {**start, "time": _share(start["time"], end, named if steps else {})}
     if steps:
         finite = isinstance(data.get("model"), Mapping) and data["model"].get("kinematics", "small") != "small"
         given = {"steps", LIST} & solve.keys()

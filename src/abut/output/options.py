@@ -49,6 +49,8 @@ class Output:
     compression : str
         "fast" (zlib), or "small" (LZMA): VTU files up to two fifths smaller, which take up to seven times as long to
         write. Both hold the same numbers, and viewers read both.
+    restart : bool
+        Whether restart files stay when the run is done, for another job to start from.
 
     Raises
     ------
@@ -66,6 +68,7 @@ class Output:
     fields: Sequence[str] = USUAL
     formats: Sequence[str] = (VTU,)
     compression: str = FAST
+    restart: bool = False
 
     def __post_init__(self) -> None:
         check_steps(self.steps, "output.steps")

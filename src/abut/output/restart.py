@@ -154,8 +154,19 @@ def load_steps(directory: Path, model: Mapping[str, str]) -> list[Saved]:
     return steps
 
 
-def _load(path: Path, number: int, model: Mapping[str, str]) -> Saved:
-    """The record of a step from its file."""
+def read_steps(directory: Path) -> tuple[list[Saved], dict[str, str]]:
+    """The records of steps 1, 2, ... as far as they go, at least one, and the description of the model that they belong to.
+    Raises InputError where one is damaged or of another version."""
+    steps: list[Saved] = []
+    model: dict[str, str] = {}
+    while not steps or is_file(directory / FOLDER / f"{len(steps) + 1:04d}.npz"):
+        saved, model = _sound(directory / FOLDER / f"{len(steps) + 1:04d}.npz", len(steps) + 1)
+        steps.append(saved)
+    return steps, model
+
+
+def _sound(path: Path, number: int) -> tuple[Saved, dict[str, str]]:
+    """The record of a step from its file, and the description of its model."""
     try:
         saved, version, before = _read(path)
         if saved.number != number:
@@ -168,6 +179,12 @@ def _load(path: Path, number: int, model: Mapping[str, str]) -> Saved:
         raise InputError(
             f"{path}: written by abut {version}, this is {abut.__version__}; run the job without --restart"
         )
+    return saved, before
+
+
+def _load(path: Path, number: int, model: Mapping[str, str]) -> Saved:
+    """The record of a step of the model described."""
+    saved, before = _sound(path, number)
     changes = differences(before, model)
     if changes:
         more = f"\n  and {len(changes) - NAMED} more" if len(changes) > NAMED else ""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 
@@ -35,7 +35,8 @@ class Stream:
 
     model: what a restart compares (``abut.output.restart.description``); restart: whether to go on after the steps of an
     earlier run, which are ``resumed``; fields: what writes the fields of a step; tell: gets a note; output: which VTU files
-    are written.
+    are written;
+    begun: steps of another job that this one begins with, kept for a restart like its own.
     Raises InputError where the directory cannot be written or another run writes there, and where there is nothing to go on
     with.
     """
@@ -48,6 +49,7 @@ class Stream:
         fields: WriteFields = write_fields,
         tell: Callable[[str], None] | None = None,
         output: Output = EVERYTHING,
+        begun: Sequence[Saved] = (),
     ) -> None:
         self.directory = directory
         self._tell = tell
@@ -58,6 +60,7 @@ class Stream:
         self._lock = Lock(directory)
         try:
             self.resumed: list[Saved] = load_steps(directory, model) if restart else []
+            self._taken = () if restart else tuple(begun)
             self._log = self._open_log()
         except BaseException:
             self._lock.release(empty=True)
@@ -92,6 +95,9 @@ class Stream:
     def step(self, solution: Solution, saved: Saved) -> None:
         """Write the last step of the solution so far."""
         self._make_room()
+        for earlier in self._taken:
+            save_step(self.directory, self._model, earlier)
+        self._taken = ()
         write_steps(self.directory, solution, self._missing(solution), self._fields, self._output, final=False)
         if self._output.wants(saved.number):
             self._whole.add(saved.number)
@@ -106,7 +112,7 @@ class Stream:
         self._make_room()
         write_held(solution, self.directory, origin, self._missing(solution), self._fields, self._output)
         self._written.add(len(solution.steps))
-        if solution.converged and solution.complete:
+        if solution.converged and solution.complete and not self._output.restart:
             clear(self.directory)
 
     def _make_room(self) -> None:

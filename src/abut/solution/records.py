@@ -204,7 +204,8 @@ class Saved:
     """Record of a converged step for a restart.
 
     state: at its end; inside: (n,) where "dual-P1" has ordinary functions; linear: the linear solver, "direct" or "amg";
-    iterations: for the log; parts: those before the last, of a step that was halved.
+    iterations: for the log; parts: those before the last, of a step that was halved; taken: whether it is that of another
+    job, whose balance is compared before the run goes on.
     """
 
     number: int
@@ -213,6 +214,7 @@ class Saved:
     linear: str
     iterations: tuple[Iteration, ...]
     parts: tuple[SavedPart, ...] = ()
+    taken: bool = False
 
 
 @dataclass(frozen=True)

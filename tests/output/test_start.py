@@ -1,0 +1,175 @@
+"""Jobs that start from the steps of another one: what one job with all steps gives."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from abut.cli import main
+from models.steps import arrays
+
+BLOCKS = """schema = 1
+[model]
+plane = "strain"
+[mesh.bodies.lower]
+kind = "rectangle"
+x = [0, 4]
+y = [0, 1]
+cells = [8, 2]
+[mesh.bodies.upper]
+kind = "rectangle"
+x = [1, 3]
+y = [1, 2]
+cells = [6, 3]
+[materials.steel]
+kind = "linear-elastic"
+young = 210e3
+poisson = 0.3
+[materials.metal]
+kind = "plastic"
+young = 210e3
+poisson = 0.3
+yield_stress = 200
+hardening = 2e3
+[[solids]]
+body = "lower"
+material = "steel"
+[[solids]]
+body = "upper"
+material = "MATERIAL"
+[[supports]]
+on = "lower.bottom"
+x = 0
+y = 0
+[[contacts]]
+name = "fit"
+contactor = "upper.bottom"
+target = "lower.top"
+friction = 0.3
+offset = -0.0005
+amplitude = AMPLITUDE
+[[supports]]
+on = "upper.top"
+y = 0
+x = 0.002
+amplitude = PUSH
+"""
+A = '[[steps]]\nname = "assemble"\nincrements = 4\n[output]\ndirectory = "a"\nrestart = true\n'
+LATER = '[[steps]]\nname = "assemble"\nincrements = 4\n[[steps]]\nname = "load"\nincrements = 5\n'
+
+
+def text(material: str, later: bool) -> str:
+    fit = '[["start", 0], ["assemble", 1]' + (', ["load", 1]]' if later else "]")
+    push = '[["start", 0], ["assemble", 0.1]' + (', ["load", 1]]' if later else "]")
+    return BLOCKS.replace("MATERIAL", material).replace("AMPLITUDE", fit).replace("PUSH", push)
+
+
+def run(folder: Path, name: str, job: str) -> int:
+    (folder / f"{name}.toml").write_text(job)
+    return main(["run", "--quiet", str(folder / f"{name}.toml")])
+
+
+def continued(name: str, results: str = "a") -> str:
+    return f'[start]\nresults = "{results}"\ntime = "assemble"\n[output]\ndirectory = "{name}"\n'
+
+
+@pytest.mark.parametrize("material", ["steel", "metal"])
+def test_two_jobs_are_one_with_two_steps(material: str, tmp_path: Path) -> None:
+    """A fit assembled in one job and pushed with friction in the next one: the same solution path, step by step, so that
+    nothing but rounding differs."""
+    assert run(tmp_path, "a", text(material, False) + A) == 0
+    assert run(tmp_path, "b", text(material, True) + LATER + continued("b")) == 0
+    assert run(tmp_path, "one", text(material, True) + LATER + '[output]\ndirectory = "one"\n') == 0
+    files = sorted(path.name for path in (tmp_path / "one").rglob("*.vtu"))
+    assert len(files) > 9
+    for file in files:
+        b, one = (next((tmp_path / name).rglob(file)) for name in ("b", "one"))
+        for (key, x), (_, y) in zip(arrays(b), arrays(one)):
+            np.testing.assert_allclose(x, y, rtol=1e-9, atol=1e-9 * np.nanmax(np.abs(y), initial=1e-3), err_msg=key)
+    summary = json.loads((tmp_path / "b" / "summary.json").read_text())
+    assert any("starts from the steps in" in note for note in summary["notes"])
+    assert not (tmp_path / "b" / "restart").exists()
+    assert (tmp_path / "a" / "restart").exists()
+
+
+def bar(later: bool) -> str:
+    """A bar without lateral contraction held, drawn to 300 and let go to 0."""
+    pull = '[["start", 0], ["assemble", 1]' + (', ["load", 0]]' if later else "]")
+    return f"""schema = 1
+[mesh.bodies.bar]
+kind = "box"
+x = [0, 2]
+y = [0, 1]
+z = [0, 1]
+cells = [2, 1, 1]
+[materials.metal]
+kind = "plastic"
+young = 200e3
+poisson = 0.3
+yield_stress = 200
+hardening = 1e4
+[[solids]]
+body = "bar"
+material = "metal"
+[[supports]]
+on = "bar.left"
+x = 0
+[[supports]]
+on = "bar.front"
+y = 0
+[[supports]]
+on = "bar.bottom"
+z = 0
+[[loads]]
+kind = "traction"
+on = "bar.right"
+value = [300, 0, 0]
+amplitude = {pull}
+[[probes]]
+name = "end"
+at = [2, 0, 0]
+of = ["displacement"]
+"""
+
+
+def test_residual_strain_of_a_bar(tmp_path: Path) -> None:
+    """Drawn beyond yield in one job, let go in the next: the plastic strain (300 - 200) / H stays, to what Newton leaves."""
+    assert run(tmp_path, "a", bar(False) + A) == 0
+    assert run(tmp_path, "b", bar(True) + LATER + continued("b")) == 0
+    table = (tmp_path / "b" / "probe_end.csv").read_text().splitlines()
+    head, last = table[0].split(","), table[-1].split(",")
+    stretch = float(
+        last[next(i for i, name in enumerate(head) if "displacement" in name and "x" in name.split("_")[-1])]
+    )
+    assert stretch == pytest.approx(2 * (300 - 200) / 1e4, rel=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("young = 210e3", "young = 200e3", "of another model"),
+        ("cells = [6, 3]", "cells = [5, 3]", "mesh."),
+        ("friction = 0.3", "friction = 0.2", "contacts[0].friction"),
+        ('results = "a"', 'results = "nowhere"', "restart = true"),
+        ('["assemble", 0.1]', '["assemble", 0.2]', "not in balance"),
+        ('["assemble", 1]', '["assemble", 0.9]', "not in balance"),
+        ('time = "assemble"', 'time = "load"', "before the end"),
+        ('directory = "b"', 'directory = "a"', "output.directory"),
+        ('time = "assemble"', 'time = "later"', "no step named"),
+    ],
+)  # fmt: skip
+def test_what_does_not_fit_is_told(
+    old: str, new: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """One message, exit status 2; and abut check says what of it can be seen before the run."""
+    assert run(tmp_path, "a", text("steel", False) + A) == 0
+    job = text("steel", True) + LATER + continued("b")
+    assert old in job
+    assert run(tmp_path, "b", job.replace(old, new)) == 2
+    assert said in capsys.readouterr().err
+    if said not in ("not in balance", "output.directory"):
+        assert main(["check", str(tmp_path / "b.toml")]) == 2
+        assert said in capsys.readouterr().out
