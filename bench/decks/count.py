@@ -46,7 +46,7 @@ REASONS = (
     (
         r"SHELL|BEAM GENERAL|BEAM SECTION|SECTION=|beam and a shell|MEMBRANE|shells and beams|"
         r"reference of a rigid body.*comes|PRE-TENSION SECTION: ELEMENT",
-        "shells and beams: layers, other sections, what they share",
+        "shells and beams: other sections, what they share",
         "solids there, or the section by its rectangle",
     ),
     (r"HYPERFOAM|DEFORMATION PLASTICITY|incompressible", "other materials", "`*PLASTIC`, `*HYPERELASTIC` with D1 > 0"),
@@ -66,7 +66,7 @@ REASONS = (
         "a deck for each state",
     ),
     (r"SUBSTRUCTURE|GREEN", "substructures", "the whole model"),
-    (r"GAP", "gap elements", "`*CONTACT PAIR`"),
+    (r"stand inside a step", "cards of a step outside of one", "`*STEP` before them"),
     (r"no \*ELEMENT cards|every body is rigid", "nothing that deforms", "add a body that does"),
     (r"no procedure", "no step that solves", "add `*STATIC`"),
     (r"different thickness", "plane elements of several thicknesses", "a deck for each, or solids"),
