@@ -199,7 +199,7 @@ class Run:
 
     def _onset(self, earlier: State | None, before: State, now: State) -> Onset:
         steps, factors = self.settings.steps, weights(self.model.histories, now.time)
-        most = Most(1.0 / steps.points, steps.shrink * steps.missed)
+        most = Most(1.0 / steps.points, steps.aim * steps.missed)
         return onset(self.assembled.problem.pairs, earlier, before, now, factors, most)
 
     def _pace(self, states: Sequence[State], done: Sequence[Saved]) -> Pace:

@@ -283,12 +283,12 @@ def _bolder(at: _Near, products: Vector, of_cones: Vector, aim: float, corrector
     step = _direction(at, products, of_cones)
     for _ in range(correctors):
         length = min(1.0, step.length(at))
-        far = min(1.0, length + settings.bold)
+        far = min(1.0, length + settings.farther)
         reached = (pressure + far * step.pressure) * (gap + far * step.gap)
-        change = np.clip(reached, settings.bold * aim, aim / settings.bold) - reached
-        following = products + np.maximum(change, -aim / settings.bold)
+        change = np.clip(reached, settings.worth * aim, aim / settings.worth) - reached
+        following = products + np.maximum(change, -aim / settings.worth)
         corrected = _direction(at, following, of_cones)
-        if min(1.0, corrected.length(at)) < length + settings.bold**2:
+        if min(1.0, corrected.length(at)) < length + settings.worth * settings.farther:
             break
         products, step = following, corrected
     return step

@@ -27,7 +27,7 @@ class LargeSteps:
     def __init__(self, problem: ContactProblem, solver: LinearSolver, control: Control) -> None:
         self._problem, self._solver, self._control = problem, solver, control
         self._stands_in: LinearSolver | None = None
-        self._limit = min(4 * control.settings.steps.easy, control.limit) if problem.pairs else control.limit
+        self._limit = min(control.settings.steps.most, control.limit) if problem.pairs else control.limit
         control.prepared(f"{solver.name}, new in every {'iteration' if solver.count is None else 'step'}")
 
     def prepare(self) -> None:

@@ -100,7 +100,7 @@ class Pace:
         end, factor = self.end, self._next(onset)
         assert end is not None
         steps = self._settings
-        length = max(1.0 / steps.points, factor * steps.shrink) * (end - self.time)
+        length = max(1.0 / steps.points, steps.aim * factor) * (end - self.time)
         if not self._follows or factor >= 0.5 or length < steps.smallest * self._leg:
             return False
         self._curve = self._rounded(length)
@@ -156,7 +156,7 @@ class Pace:
     def _factor(self, onset: Onset) -> float:
         """How much longer the next step is than one with an onset of slip that was taken."""
         longest = 2.0 if onset.shares[0] > self._same else float(self._settings.points)
-        return min(longest, onset.ahead, self._settings.shrink * self._next(onset))
+        return min(longest, onset.ahead, self._settings.aim * self._next(onset))
 
     def _next(self, onset: Onset) -> float:
         """How much longer a step may be than the one that shows an onset of slip, theory (R21)."""

@@ -64,20 +64,16 @@ class StepSettings:
     """Load steps that the program finds."""
 
     first: float = _of(0.1, "of the way to the next goal", "the first step", "test_pace.py")
-    easy: int = _of(
-        6, "iterations", "up to which the next step is longer; shorter above twice, halved above four times as many",
-        "test_pace.py, test_large_sliding.py",
-    )  # fmt: skip
+    easy: int = _of(6, "iterations", "up to which the next step is longer; shorter above twice as many", "test_pace.py")
     growth: float = _of(1.5, "step over the last one", "after an easy step", "test_pace.py")
-    shrink: float = _of(
-        0.7, "step over the last one", "after a hard step; of the longest that the onset of slip allows",
-        "test_pace.py, test_onset_of_slip.py",
-    )  # fmt: skip
+    shrink: float = _of(0.7, "step over the last one", "after a hard step", "test_pace.py")
     missed: float = _of(
         0.01, "of friction", "that a step gets wrong: where points touch and stick in it, and where slip begins in it",
         "test_step_error.py, test_onset_of_slip.py",
     )  # fmt: skip
+    most: int = _of(25, "iterations", "in a step, above which it is halved", "test_large_sliding.py")
     points: int = _of(8, "load steps", "over which contact begins to slip, theory (R21)", "test_onset_of_slip.py")
+    aim: float = _of(0.8, "of the longest step", "that the onset of slip allows", "test_onset_of_slip.py")
     smallest: float = _of(
         1.0 / 4096.0, "of the way to the next goal", "step; its root where the user gives steps", "test_pace.py",
     )  # fmt: skip
@@ -139,10 +135,8 @@ class InteriorSettings:
 
     boundary: float = _of(0.995, "of the way to it", "that a step goes", "test_search.py")
     central: float = _of(1e-3, "of the mean product", "that the smallest keeps", "test_search.py")
-    bold: float = _of(
-        0.1, "of a step, of that gain, of the product aimed at", "that a corrector aims to gain, and must (Gondzio 1996)",
-        "test_search.py",
-    )  # fmt: skip
+    farther: float = _of(0.3, "of a step", "that a corrector aims to gain", "test_search.py")
+    worth: float = _of(0.1, "of that gain, of the product aimed at", "below which it is none", "test_search.py")
     undecided: float = _of(0.4, "relative change", "from -1/2: neither closing nor opening", "test_search.py")
     steepest: float = _of(100.0, "coefficient of friction", "of surfaces that never slip", "test_friction.py")
     fade: float = _of(0.3, "of the last one", "softness or dilatancy once laws are met", "test_smooth_friction_runs.py")
