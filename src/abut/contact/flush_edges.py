@@ -62,19 +62,7 @@ class FlushEdges:
         others = np.repeat(~facets, MAX_FACET_NODES).astype(float)
         return np.asarray(some & ~(abs(space.plain).T @ others > 0.0))
 
-    def facets(
-        self, space: PressureSpace, closed: NDArray[np.bool_], known: NDArray[np.bool_] | None = None
-    ) -> NDArray[np.bool_]:
-        """Facets (n_facets,) of those functions; and of ``known`` ones (n_facets,) those in which nothing else is closed."""
-        alone = self.alone(space, closed)
-        result = self._acted_on(space, alone)
-        if known is None or not known.any():
-            return result
-        at_edge = np.zeros(self.n_facets, dtype=bool)
-        at_edge[self.facet] = True
-        return np.asarray(result | (known & at_edge & ~self._acted_on(space, closed & ~alone)))
-
-    def _acted_on(self, space: PressureSpace, some: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Facets (n_facets,) of some functions (n_functions,)."""
-        acts = abs(space.plain) @ some.astype(float)
-        return np.asarray((acts > 0.0).reshape(self.n_facets, MAX_FACET_NODES).any(axis=1))
+    def facets(self, space: PressureSpace, closed: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Facets (n_facets,) of those functions."""
+        acts = abs(space.plain) @ self.alone(space, closed).astype(float)
+        return np.asarray(acts.reshape(self.n_facets, MAX_FACET_NODES).any(axis=1))

@@ -16,14 +16,14 @@ from abut.contact.coupling import Coupling, CouplingOptions, couple, surface_deg
 from abut.contact.coupling_tangent import CouplingTangent, Differentiate, differentiated
 from abut.contact.geometry import Smoothing, facet_sizes, full_moments, nodal_normals
 from abut.contact.moving_normals import MovingNormals, NormalPattern, normal_pattern
-from abut.contact.pressure_space import PressureSpace
+from abut.contact.pressure_space import DUAL_P1, PressureSpace
 from abut.contact.rim import Rim, goes_on
 from abut.contact.slip_points import Past, SlipPoints
 from abut.mesh.surface import Surface
 from abut.problem.adjusted_gaps import BARELY, with_adjusted
 from abut.problem.current_friction import Rubbing, Tangents
 from abut.problem.current_slips import Seen, contact_load, either, with_friction
-from abut.problem.dual_functions import Mixed, Mixture, dual_share, mixed_part, ordinary_now
+from abut.problem.dual_functions import Mixed, Mixture, dual_share, inner_now, mixed_part
 from abut.problem.edge_functions import Following, led
 from abut.problem.first_touch import Sides, apart
 from abut.problem.frame import PairFrame
@@ -66,9 +66,9 @@ class Current:
         return self._with_following(late, end, settled=True)
 
     def _with_functions(self, frame: PairFrame, now: Placed) -> PairFrame:
-        """With ordinary functions in place of dual ones where they belong there, and with fits; the same object where they
+        """With the ordinary functions of "dual-P1" inside what is closed there, and with fits; the same object where they
         are there already, fits nearly."""
-        inner = None if self.pair.space.ordinary else self.inner(now.displacement, now.closed, frame.inner)
+        inner = self.inner(now.displacement, now.closed) if self.pair.space.name == DUAL_P1 else None
         fit = self.fit(now.displacement) if self.fits else None
         known = np.zeros(len(self.pair.contactor)) if frame.inner is None else frame.inner
         if (inner is None or np.array_equal(known, inner)) and self._fitted(frame.fit, fit, now):
@@ -278,14 +278,12 @@ class Current:
         """Edges (m,) of the rim beyond which the target goes on, ``here`` being the pair with surfaces as they are now."""
         return goes_on(here.contactor, border, here.target, NEAR * self._facet)
 
-    def inner(self, displacement: Array, closed: NDArray[np.bool_], known: Array | None = None) -> Array:
-        """Where ordinary functions take the place of dual ones, (n_facets,) 1 or 0, with multipliers (n,) closed there;
-        known: where they did so far."""
+    def inner(self, displacement: Array, closed: NDArray[np.bool_]) -> Array:
+        """Where the functions of "dual-P1" are the ordinary ones, (n_facets,) 1 or 0, with multipliers (n,) closed there."""
         contactor, target = self.surfaces(displacement)
         options = self._options()
         share = couple(contactor, target, 0, options, across=self._across).covered / full_moments(contactor, 0)[:, 0]
-        touching, near = closed[self.pair.normal], NEAR * self._facet
-        return ordinary_now(self.pair.space, contactor, target, share, touching, near, known)
+        return inner_now(self.pair.space, contactor, target, share, closed[self.pair.normal], NEAR * self._facet)
 
     def following(self, displacement: Array, closed: NDArray[np.bool_], offset: float) -> Following:
         """Which functions follow others where the pair is now, with multipliers (n,) closed; those that overlap there count

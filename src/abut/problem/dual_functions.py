@@ -14,9 +14,8 @@ from abut.contact.block_rows import block_rows
 from abut.contact.coupling import Coupling
 from abut.contact.coupling_tangent import CouplingTangent
 from abut.contact.facet_area import area_change
-from abut.contact.flush_edges import FlushEdges
 from abut.contact.geometry import beside_others, full_moments
-from abut.contact.pressure_space import DUAL_P1, PressureSpace, inner_facets, partly_dual
+from abut.contact.pressure_space import PressureSpace, inner_facets, partly_dual
 from abut.contact.rim import ends_on_target, goes_on, rim
 from abut.contact.slip_points import SlipNow
 from abut.dofs import n_places
@@ -162,21 +161,13 @@ def _least_around(contactor: Surface, values: Array) -> NDArray[np.int64]:
     return np.asarray(order[result])
 
 
-def ordinary_now(
-    space: PressureSpace, contactor: Surface, target: Surface, whole: Array, closed: NDArray[np.bool_], near: float,
-    known: Array | None,
-) -> Array:  # fmt: skip
-    """Where functions are the ordinary ones, (n_facets,) 1 or 0: of "dual-P1" well inside closed contact, theory (P9); of
-    that and "dual" where both sides end, theory (P26).
+def inner_now(
+    space: PressureSpace, contactor: Surface, target: Surface, whole: Array, closed: NDArray[np.bool_], near: float
+) -> Array:
+    """Where functions of "dual-P1" are the ordinary ones, (n_facets,) 1 or 0, theory (P9): well inside closed contact.
 
-    whole: (n_facets,) covered share; closed: (n_functions,) bool; near: a length, how far apart the surfaces may be; known:
-    where they were so far, as the result."""
+    whole: (n_facets,) covered share; closed: (n_functions,) bool; near: a length, how far apart the surfaces may be."""
     border = rim(contactor)
-    beyond = goes_on(contactor, border, target, near)
-    flush = FlushEdges.of(contactor, border, ~beyond)
-    result = flush.facets(space, closed, None if known is None else known != 0.0)
-    if space.name == DUAL_P1:
-        edge = ends_on_target(contactor, border, beyond)
-        interior = (whole > 1.0 - WHOLE) & ~edge & ~beside_others(contactor)
-        result = result | inner_facets(space, contactor, interior, closed)
-    return result.astype(float)
+    edge = ends_on_target(contactor, border, goes_on(contactor, border, target, near))
+    interior = (whole > 1.0 - WHOLE) & ~edge & ~beside_others(contactor)
+    return inner_facets(space, contactor, interior, closed).astype(float)
