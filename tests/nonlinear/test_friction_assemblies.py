@@ -154,8 +154,12 @@ def test_parts(name: str) -> None:
     rubbing = abut.solve(model)
     assert rubbing.converged
     smooth = abut.solve(replace(model, contacts=[replace(own, friction=0.0) for own in model.contacts]))
-    tried = 5 if name == "clevis" else 0  # where it closes alone at an edge: with other functions and back, theory (P26)
-    assert len(rubbing.steps[0].iterations) <= 1.5 * len(smooth.steps[0].iterations) + 4.5 + tried  # 1.5: of the press fit
+    tried = (
+        5 if name == "clevis" else 0
+    )  # where it closes alone at an edge: with other functions and back, theory (P26)
+    assert (
+        len(rubbing.steps[0].iterations) <= 1.5 * len(smooth.steps[0].iterations) + 4.5 + tried
+    )  # 1.5: of the press fit
 
 
 @pytest.mark.long
