@@ -8,17 +8,18 @@ from __future__ import annotations
 
 import numpy as np
 
+from abut.benchmarks import hertz
 from abut.benchmarks.record import Benchmark, Reference
 from abut.materials.elastic import LinearElastic
-from abut.materials.invariants import principal
+from abut.materials.invariants import max_shear
 from abut.mesh.make import box, half_disc, join, quarter_disc, rectangle, sphere_octant
 from abut.model import Contact, Force, Model, Solid, Support
 from abut.solution import Solution
 from abut.types import Array
 
 NU = 0.3
-LINE = 6.2146 / 8.0, 3585.36 / 8.0, 35e3 / 64.0  # half width, largest pressure, force: R = 50, E 210e3 on 70e3
-BALL = 1.00964 / 10.0, 88.290 / 10.0, 60.0 * np.pi / 1000.0  # R = 8, E = 1000, rigid plane
+LINE = hertz.HALF_WIDTH / 8.0, hertz.LINE_PEAK / 8.0, hertz.LINE_FORCE / 64.0  # half width, largest pressure, force
+BALL = hertz.RADIUS / 10.0, hertz.BALL_PEAK / 10.0, hertz.BALL_FORCE / 1000.0
 SOURCE = "Johnson, Contact Mechanics, 4.2 (McEwen) and 3.4 (Huber)"
 REASON = "facets of a sixth of the half width, nodes beside the peak, finite bodies for half spaces"
 
@@ -82,8 +83,7 @@ def ball_shear(z: Array) -> Array:
 
 def _measure(solution: Solution, half_width: float, peak: float) -> dict[str, float]:
     x, nodes = solution.model.mesh.points, solution.model.mesh.nodes_of("body")
-    found = principal(solution.steps[-1].stress[nodes])
-    shear = 0.5 * (found[:, 0] - found[:, 2])
+    shear = max_shear(solution.steps[-1].stress[nodes])
     deepest = nodes[int(shear.argmax())]
     return {"largest shear": float(shear.max()) / peak, "depth": abs(float(x[deepest, -1])) / half_width}
 
@@ -96,9 +96,8 @@ def _benchmark(name: str, title: str, cell: str, n: int) -> Benchmark:
         "line": (_line, LINE, line_shear), "ball": (_ball, BALL, ball_shear), "sphere": (_octant, BALL, ball_shear),
     }[name]  # fmt: skip
     curve = exact(DEPTH)
-    nodes = (
-        0.25 if cell in ("quad4", "tri3", "hex8", "tet4") else 0.125
-    )  # between those of cells as deep as they are there
+    # between those of cells as deep as they are there
+    nodes = 0.25 if cell in ("quad4", "tri3", "hex8", "tet4") else 0.125
     return Benchmark(
         f"hertz-shear-{name}-{cell}",
         f"{title}, {cell}: largest shear below the surface",

@@ -17,9 +17,8 @@ def spin_softening(model: Model, time: float) -> Sparse:
     factors = dict(zip(model.histories, weights(model.histories, time)))
     densities = {solid.body: float(solid.material.density) for solid in model.solids}
     for load in model.loads:
-        factor = factors.get(load.amplitude, 0.0) if isinstance(load, Centrifugal) else 0.0
-        if isinstance(load, Centrifugal) and factor:
+        if isinstance(load, Centrifugal) and factors[load.amplitude]:
             own = densities if load.on is None else {load.on: densities[load.on]}
             slope = load.slope(model.dim, model.mesh.axisymmetric)
-            total = total - factor * mass(model.mesh, own, slope)
+            total = total - factors[load.amplitude] * mass(model.mesh, own, slope)
     return total.tocsr()

@@ -143,26 +143,34 @@ def _contacts(data: Mapping[str, Any], names: Sequence[str], of: str) -> dict[st
 def load_steps(directory: Path, model: Mapping[str, str]) -> list[Saved]:
     """The records of steps 1, 2, ... as far as they go. Raises InputError where there are none, where one is damaged, or
     where it belongs to another model than the one described."""
-    steps: list[Saved] = []
-    while is_file(path := directory / FOLDER / f"{len(steps) + 1:04d}.npz"):
-        steps.append(_load(path, len(steps) + 1, model))
-    if not steps:
+    found = read_steps(directory)
+    if not found:
         raise InputError(
             f"nothing to go on with in {directory}: it has no restart data, because a run there has finished, or none has "
             "got past its first step; run the job without --restart"
         )
-    return steps
+    for _, before in found:
+        if changes := differences(before, model):
+            raise InputError(
+                f"the model is not the one whose steps are in {directory / FOLDER}:{listed(changes)}\nundo the change, or "
+                "run the job without --restart"
+            )
+    return [saved for saved, _ in found]
 
 
-def read_steps(directory: Path) -> tuple[list[Saved], dict[str, str]]:
-    """The records of steps 1, 2, ... as far as they go, at least one, and the description of the model that they belong to.
-    Raises InputError where one is damaged or of another version."""
-    steps: list[Saved] = []
-    model: dict[str, str] = {}
-    while not steps or is_file(directory / FOLDER / f"{len(steps) + 1:04d}.npz"):
-        saved, model = _sound(directory / FOLDER / f"{len(steps) + 1:04d}.npz", len(steps) + 1)
-        steps.append(saved)
-    return steps, model
+def read_steps(directory: Path) -> list[tuple[Saved, dict[str, str]]]:
+    """The records of steps 1, 2, ... as far as they go, each with the description of its model. Raises InputError where one
+    is damaged or of another version."""
+    found: list[tuple[Saved, dict[str, str]]] = []
+    while is_file(path := directory / FOLDER / f"{len(found) + 1:04d}.npz"):
+        found.append(_sound(path, len(found) + 1))
+    return found
+
+
+def listed(changes: Sequence[str]) -> str:
+    """The first of the differences between two models, a line each."""
+    more = f"\n  and {len(changes) - NAMED} more" if len(changes) > NAMED else ""
+    return "".join(f"\n  {change}" for change in changes[:NAMED]) + more
 
 
 def _sound(path: Path, number: int) -> tuple[Saved, dict[str, str]]:
@@ -177,23 +185,10 @@ def _sound(path: Path, number: int) -> tuple[Saved, dict[str, str]]:
         ) from None
     if version != abut.__version__:
         raise InputError(
-            f"{path}: written by abut {version}, this is {abut.__version__}; run the job without --restart"
+            f"{path}: written by abut {version}, this is {abut.__version__}; run the job that wrote it again, without "
+            "--restart"
         )
     return saved, before
-
-
-def _load(path: Path, number: int, model: Mapping[str, str]) -> Saved:
-    """The record of a step of the model described."""
-    saved, before = _sound(path, number)
-    changes = differences(before, model)
-    if changes:
-        more = f"\n  and {len(changes) - NAMED} more" if len(changes) > NAMED else ""
-        listed = "".join(f"\n  {change}" for change in changes[:NAMED])
-        raise InputError(
-            f"the model is not the one whose steps are in {path.parent}:{listed}{more}\nundo the change, or run the job "
-            "without --restart"
-        )
-    return saved
 
 
 def _read(path: Path) -> tuple[Saved, str, dict[str, str]]:

@@ -8,9 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from abut.errors import InputError
-from abut.io.names import is_file
 from abut.model import Model
-from abut.output.restart import FOLDER, NAMED, description, differences, read_steps
+from abut.output.restart import description, differences, listed, read_steps
 from abut.solution import Saved
 
 # what may differ: what acts, whose values the balance of every step taken over compares, and the ways of all over time
@@ -35,19 +34,18 @@ def load_start(directory: Path, model: Model, share: float) -> list[Saved]:
             )
     if not all(isinstance(contact.law, str) for contact in model.contacts):
         raise InputError("start: steps of another job cannot be taken over where contacts have a law of their own")
-    if not is_file(directory / FOLDER / "0001.npz"):
+    found = read_steps(directory)
+    if not found:
         raise InputError(
             f"start.results: no restart files in {directory}; run that job with restart = true in its [output] first"
         )
-    steps, before = read_steps(directory)
-    changes = differences(_kept(before), _kept(description(model)))
-    if changes:
-        more = f"\n  and {len(changes) - NAMED} more" if len(changes) > NAMED else ""
-        listed = "".join(f"\n  {change}" for change in changes[:NAMED])
-        raise InputError(f"start.results: the steps in {directory} are of another model:{listed}{more}\nonly loads, "
-                         "supports and amplitudes may differ")  # fmt: skip
-    scale = share / steps[-1].state.time
-    return [_sooner(saved, scale) for saved in steps]
+    own = _kept(description(model))
+    for _, before in found:
+        if changes := differences(_kept(before), own):
+            raise InputError(f"start.results: the steps in {directory} are of another model:{listed(changes)}\nonly loads, "
+                             "supports and amplitudes may differ")  # fmt: skip
+    scale = share / found[-1][0].state.time
+    return [_sooner(saved, scale) for saved, _ in found]
 
 
 def _kept(leaves: Mapping[str, str]) -> dict[str, str]:
