@@ -48,6 +48,8 @@ BAD = {
     "wrong side": ('"lower.top"', '"lower.bottom"', "faces"),
     "missing solid": ('[[solids]]\nbody = "upper"\nmaterial = "steel"\n', "", "no material for body 'upper'"),
     "no mesh file": (MESH, '[mesh]\nfile = "no.msh"\n', "does not exist"),
+    "a name for a table": (MESH, 'mesh = "no.msh"\n', "mesh: expected a table, [mesh] with its keys below it, got 'no.msh'"),
+    "one for a list": ("[[contacts]]", "[contacts]", "contacts: expected a list: write [[contacts]] instead of [contacts]"),
     "pair given twice": ("[materials.steel]", TWICE, "pressure between them would be determined twice"),
 }
 # fmt: on

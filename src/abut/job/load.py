@@ -61,6 +61,7 @@ GENERATORS: Mapping[str, Callable[..., Mesh]] = {
 # pydantic's names for one of several types that a value may have
 CHOICES = ("str", "int", "float", "list[str]", "list[float]", "list[list[float]]")
 DECK = ".inp"
+TABLES = ("model_type", "model_attributes_type", "dict_type")  # what pydantic calls the want of one
 
 
 @dataclass(frozen=True)
@@ -304,6 +305,10 @@ def _explain(error: Json, data: Json) -> str:
         return f"{place}.kind: expected one of {tags}, got {tag!r}" + (f"; {said}" if said else "")
     if kind == "finite_number":
         return f"{place}: expected a finite number, got {error['input']!r}"
+    if kind in TABLES:
+        return f"{place}: expected a table, [{place}] with its keys below it, got {error['input']!r}"
+    if kind == "list_type" and len(location) == 1 and isinstance(error["input"], dict):
+        return f"{place}: expected a list: write [[{place}]] instead of [{place}], once for each"
     return f"{place}: {error['msg'].replace('Input should be', 'expected')}, got {error['input']!r}"
 
 
