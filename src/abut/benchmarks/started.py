@@ -5,6 +5,7 @@ from __future__ import annotations
 import tempfile
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from abut.analysis import solve
 from abut.benchmarks.record import Benchmark, Reference
@@ -67,15 +68,16 @@ def _first(model: Model) -> Model:
     return replace(
         model,
         loads=[replace(load, amplitude=RAMP) for load in model.loads],
-        supports=[replace(support, amplitude=None, **_still(support)) for support in model.supports],
+        supports=[_still(support) for support in model.supports],
         contacts=[replace(contact, amplitude=RAMP) for contact in model.contacts],
         solve=SolveOptions(steps=2),
     )
 
 
-def _still(support: Support) -> dict[str, float]:
-    """Components that are held, at zero, in place of those that the second job moves."""
-    return {name: 0.0 for name in "xyz" if getattr(support, name) is not None}
+def _still(support: Support) -> Support:
+    """With what it moves at rest."""
+    at_rest: Any = {name: 0.0 for name in "xyz" if getattr(support, name) is not None}
+    return replace(support, amplitude=None, **at_rest)
 
 
 def _one_after_the_other(model: Model) -> Solution:
