@@ -34,7 +34,17 @@ from abut.report.times import time_axis
 from abut.solution import ContactResult, Solution
 from abut.types import Json
 
-SCRIPTS = ("plots.js", "inflate.js", "parts.js", "arrows.js", "section.js", "sight.js", "view.js", "report.js")
+SCRIPTS = (
+    "plots.js",
+    "inflate.js",
+    "parts.js",
+    "arrows.js",
+    "section.js",
+    "sight.js",
+    "vibration.js",
+    "view.js",
+    "report.js",
+)
 UNLIKE = 1.05  # contact force by area over the resultant, from which on both are shown
 STYLES = ("libraries.css", "report.css")
 STILL = ("report.css", "still.css")  # without the libraries
