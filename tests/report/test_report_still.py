@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import abut
+from abut.mesh import make
 from abut.report import svg
 from abut.report.raster import Canvas, ramp, view
 from models.friction import pushed
@@ -120,3 +121,28 @@ def test_powers_of_ten_are_marked_at_most_eight_times() -> None:
     text = svg.plot("r", "i", [1.0, 2.0], [svg.Series("y", [1.0, 1e-16])], log=True)
     marks = re.findall(r">(1e-?\d+)<", text)
     assert 4 <= len(marks) <= 8
+
+
+def test_modes_are_pictures(not_built: None, tmp_path: Path) -> None:
+    """A bar between guides stretches as sin(pi x / 2 L): at one end of its first mode it reaches a tenth of the model's size
+    beyond its own end, and the picture says which mode that is."""
+    mesh = make.join({"bar": make.rectangle([0.0, 10.0], [0.0, 1.0], cells=[8, 1], cell="quad8")})
+    solution = abut.solve(
+        abut.Model(
+            mesh,
+            plane="stress",
+            solids=[abut.Solid("bar", abut.LinearElastic(1.0, 0.0, density=1.0))],
+            supports=[abut.Support("bar.left", x=0), abut.Support("bar.bottom", y=0), abut.Support("bar.top", y=0)],
+            modes=[abut.Frequencies(2)],
+        )
+    )
+    text = abut.write_report(solution, tmp_path / "report.html").read_text(encoding="utf-8")
+    pictures = re.findall(r'<figure><img alt="(mode [^"]*)" src="data:image/png;base64,([^"]*)"', text)
+    values = solution.modes[0].values
+    assert [caption for caption, _ in pictures] == [
+        f"mode {i + 1}: {value:.6g} per time; amplitude over the largest" for i, value in enumerate(values)
+    ]
+    drawn = pixels(base64.b64decode(pictures[0][1]))[..., 3] > 0
+    across, along = (np.ptp(np.flatnonzero(drawn.any(axis=axis))) + 1 for axis in (1, 0))
+    longer = 10.0 + (1 if along > 10.0 * across else -1) * 0.1 * np.hypot(10.0, 1.0)
+    assert along / across == pytest.approx(longer, rel=0.03)  # pixels

@@ -34,7 +34,7 @@ from abut.report.times import time_axis
 from abut.solution import ContactResult, Solution
 from abut.types import Json
 
-SCRIPTS = ("plots.js", "inflate.js", "parts.js", "arrows.js", "section.js", "sight.js", "view.js", "report.js")
+SCRIPTS = ("plots", "inflate", "parts", "arrows", "section", "sight", "vibration", "view", "report")
 UNLIKE = 1.05  # contact force by area over the resultant, from which on both are shown
 STYLES = ("libraries.css", "report.css")
 STILL = ("report.css", "still.css")  # without the libraries
@@ -72,7 +72,7 @@ def page(solution: Solution, origin: Origin, beside: Beside | None = None) -> st
         "data": json.dumps(data, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c"),
         "arrays": arrays.text if libraries else "",
         "libraries": f"<script>{libraries}</script>" if libraries else "",
-        "scripts": f"<script>{''.join(map(_static, SCRIPTS))}</script>" if libraries else "",
+        "scripts": f"<script>{''.join(_static(f'{name}.js') for name in SCRIPTS)}</script>" if libraries else "",
     }
     first, *rest = _static("report.html").split("{{")
     text = [first]

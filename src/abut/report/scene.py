@@ -16,6 +16,7 @@ from abut.report.arrays import moved as on_grid
 from abut.report.arrays import rounded
 from abut.report.friction import arrow_nodes, arrow_normals, at_arrows, friction_fields
 from abut.report.inside import tetrahedra
+from abut.report.mode_shapes import SHAPE, cost, drawn, mode_shapes
 from abut.report.quantities import Extremes, contact_ranges, extremes, of_nodes, of_stress, peak_steps
 from abut.report.surface_triangles import Patch, Skin, patch, skin
 from abut.report.times import time_at
@@ -30,6 +31,7 @@ RUBBING = 32  # more of them on a contactor with friction: traction, slips, stat
 FIXED = 60  # bytes of a point in all: coordinates, triangles, edges
 CORNERS = 16  # bytes of a tetrahedron of the inside
 FOR_INSIDE = 0.5  # share of the size that the inside may take
+FOR_MODES = 0.5  # share of what is left that modes may take
 
 
 @dataclass(frozen=True)
@@ -57,17 +59,23 @@ def scene(solution: Solution, budget: int = BUDGET, of_bodies: dict[str, Extreme
     patches = [patch(surface, _divided(surfaces)) for surface in surfaces]
     needed, on_contacts = peak_steps(solution, of_bodies), sum(map(len, patches))
     skins = {body: skin(mesh, body, without) for body in mesh.bodies}
-    skins, said = _within(mesh, skins, budget, on_contacts, len(needed))
+    of_point = FIXED + VALUES * len(needed) + max(map(cost, solution.modes), default=0)
+    skins, said = _within(mesh, skins, budget, on_contacts, of_point)
     reduced = [said] if said else []
     points = sum(len(s.nodes) for s in skins.values())
     per_step = VALUES * (points + on_contacts)
     rubbing = [p for (c, role), p in zip(sides, patches) if role == "contactor" and contacts[c].friction is not None]
     per_step += RUBBING * sum(map(len, rubbing))
     fixed = FIXED * (points + on_contacts) + CORNERS * sum(len(s.inside) for s in skins.values())
+    modes = drawn(solution, points + on_contacts, FOR_MODES * (budget - fixed - per_step * len(needed)))
+    fixed += sum(cost(result) for result, _ in modes) * (points + on_contacts)
     steps = kept(solution.steps, needed, max(1, int((budget - fixed) // max(per_step, 1))))
     if len(steps) < len(solution.steps):
         some = f"{len(steps)} of {len(solution.steps)} steps"
         reduced.append(f"the picture shows {some}, those of the largest values among them")
+    if len(modes) < (every := sum(map(len, solution.modes))):
+        reduced.append(f"the picture shows the first {len(modes)} of {every} modes")
+    ranges = {name: own.ranges for name, own in of_bodies.items()} | contact_ranges(solution)
     data = {
         "dim": mesh.dim,
         "finite": solution.model.finite,
@@ -75,18 +83,18 @@ def scene(solution: Solution, budget: int = BUDGET, of_bodies: dict[str, Extreme
         "bodies": [_body(mesh, name, s) for name, s in skins.items()],
         "contacts": [_side(mesh, contacts[c], role, p) for (c, role), p in zip(sides, patches)],
         "steps": [_fields(solution.model, step, list(skins.values()), sides, patches) for step in steps],
-        "ranges": {name: own.ranges for name, own in of_bodies.items()} | contact_ranges(solution),
+        "modes": mode_shapes(modes, list(skins.values()), patches),
+        "ranges": ranges | ({SHAPE: [[0.0, 1.0]]} if modes else {}),
         "mirrors": mirrors(solution.model),
     }
     return Scene(data, tuple(reduced))
 
 
 def _within(
-    mesh: Mesh, skins: dict[str, Skin], budget: int, on_contacts: int, steps: int
+    mesh: Mesh, skins: dict[str, Skin], budget: int, on_contacts: int, of_point: int
 ) -> tuple[dict[str, Skin], str]:
-    """Skins with their inside, without, or thinned, so that so many steps stay within a budget beside some points of
+    """Skins with their inside, without, or thinned, so that points of so many bytes stay within a budget beside some of
     contact surfaces; and what was left out, in words."""
-    of_point = FIXED + VALUES * steps
     points = sum(len(s.nodes) for s in skins.values())
     room = max(budget - of_point * on_contacts, budget // 2)
     if points * of_point > room:

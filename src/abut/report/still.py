@@ -12,11 +12,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.report.mode_shapes import SHAPE
 from abut.report.raster import Canvas, lights, ramp, view
 from abut.report.svg import Series, plot
 from abut.types import Json
 
 SIZE = (1200, 640)  # of a picture, pixels
+SWING = 0.1  # largest displacement of a mode over the size of the model
+MODES = 6  # pictures of them
 PRESSED = 0.01  # share of the largest pressure above which a part counts as pressed
 PLAIN = (0.8, 0.83, 0.85)
 INK = (0.25, 0.28, 0.32)
@@ -26,6 +29,7 @@ MAPS = {
     "pressure": ("1b0c41", "4a0c6b", "781c6d", "a52c60", "cf4446", "ed6925", "fb9b06", "f7d13d", "fcffa4"),
     "von Mises": ("30123b", "4145ab", "4675ed", "39a2fc", "1bcfd4", "24eca6", "61fc6c", "a4fc3b", "d1e834", "f3c63a",
                   "fe9b2d", "f36315", "d93806", "b11901", "7a0402"),
+    SHAPE: ("440154", "482878", "3e4989", "31688e", "26828e", "1f9e89", "35b779", "6ece58", "b5de2b", "fde725"),
 }  # fmt: skip
 HOW = (
     "This report was written without three.js and uPlot, which draw the interactive picture: they could not be fetched when "
@@ -70,7 +74,29 @@ def _pictures(scene: Json) -> list[str]:
             top = float(scene["ranges"]["pressure"][0][1]) or 1.0
             what = f"pressure on the contactor {side['surface']} of {side['contact']}, seen from outside, {when}"
             shown.append(_figure(pressed, [_lines(side, own)], towards, "pressure", (0.0, top), what, PRESSED * top))
-    return shown
+    return [*shown, *(_mode(scene, mode) for mode in scene["modes"][:MODES])]
+
+
+def _mode(scene: Json, mode: Json) -> str:
+    """The bodies and contact surfaces at one end of a mode's swing about the last step, and how far each point moves."""
+    last, flat = scene["steps"][-1], scene["dim"] == 2
+    items = [(b, b["triangles"], *own) for b, *own in zip(scene["bodies"], last["bodies"], mode["bodies"])]
+    sides = [] if flat else list(zip(scene["contacts"], last["contacts"], mode["contacts"]))
+    items += [(side, side["cells"], *own) for side, *own in sides]
+    points = np.concatenate([_vectors(item["points"]) for item, *_ in items])
+    far = SWING * float(np.linalg.norm(np.ptp(points, axis=0)))
+    swung = [_swung(state, own, far) for _, _, state, own in items]
+    corners = [_corners(item["points"], cells, own, SHAPE) for (item, cells, _, _), own in zip(items, swung)]
+    lines = [_lines(item, own) for (item, *_), own in zip(items, swung) if "features" in item]
+    towards = np.array([0.0, 0.0, 1.0]) if flat else CORNER
+    return _figure(corners, lines, towards, SHAPE, (0.0, 1.0), f"{mode['name']}; amplitude over the largest")
+
+
+def _swung(state: Json, own: Json, far: float) -> Json:
+    """Displacement and amplitude of a part."""
+    real, imaginary = (_vectors(own[name]) if name in own else np.zeros(1) for name in ("real", "imaginary"))
+    size = np.sqrt((real**2).sum(axis=-1) + (imaginary**2).sum(axis=-1))
+    return {"displacement": (_vectors(state["displacement"]) + far * real).ravel(), SHAPE: size}
 
 
 def _largest_stress(step: Json) -> float:

@@ -15,11 +15,12 @@ const MAPS = {
   "plastic strain": ["fffff0", "fff2ae", "fec44f", "fe9929", "ec7014", "cc4c02", "8c2d04"],
   "stress error": ["fcfbfd", "dadaeb", "9e9ac8", "756bb1", "54278f", "3f007d"],
   "displacement": ["440154", "482878", "3e4989", "31688e", "26828e", "1f9e89", "35b779", "6ece58", "b5de2b", "fde725"],
+  "mode shape": ["440154", "482878", "3e4989", "31688e", "26828e", "1f9e89", "35b779", "6ece58", "b5de2b", "fde725"],
 };
 
 const STATUS = [["open", "b8bec6"], ["slipping", "e8a33d"], ["sticking", "2a6fb5"]]; // by its value as drawn
 const FROM_ZERO = ["pressure", "traction", "slip", "slip in the step", "friction work"];
-const ON_BODIES = ["von Mises", "largest principal stress", "smallest principal stress", "plastic strain", "stress error", "displacement"];
+const ON_BODIES = ["von Mises", "largest principal stress", "smallest principal stress", "plastic strain", "stress error", "displacement", "mode shape"];
 
 // An array of the page, from its place in the text that has all of them, byte by byte of its numbers.
 function unpack(array) {
@@ -116,6 +117,7 @@ class Part {
     this.turns = turns; // far: normals go with the deformation
     this.kind = kind; // "body", "side" (surface of a contact) or "fence" (values drawn across a line in 2D)
     this.flat = flat;
+    this.sway = null; // of a mode, see sway()
     this.base = unpack(item.points);
     const cells = unpack(item.cells || item.triangles);
     this.geometry = new THREE.BufferGeometry();
@@ -168,6 +170,7 @@ class Part {
 
   // Values of a field at the points of the data, or null where this part does not have it.
   field(step, name) {
+    if (name === "mode shape") return this.sway && this.sway.size;
     const own = (this.kind === "body" ? step.bodies : step.contacts)[this.item.number];
     if (name !== "displacement") return own[name] ? (own[name].array ||= unpack(own[name])) : null;
     if (!own.size) {
@@ -199,6 +202,12 @@ class Part {
     this.geometry.attributes.normal.needsUpdate = true;
   }
 
+  // Those of the surface before anything moved.
+  turnBack() {
+    this.geometry.attributes.normal.array.set(this.kind === "side" ? unpack(this.item.normals) : creasedNormals(this.base, this.map));
+    this.geometry.attributes.normal.needsUpdate = true;
+  }
+
   // Normals of a line, turned as much as its pieces.
   turned(moved) {
     const turn = new Float32Array(2 * this.base.length / 3), result = new Float32Array(this.normals.length);
@@ -223,7 +232,7 @@ class Part {
     const u = this.displacement(step), values = this.field(step, name), high = this.kind === "fence" ? this.field(step, tall) : null;
     const position = this.geometry.attributes.position, value = this.geometry.attributes.value.array;
     const moved = this.kind === "fence" ? new Float32Array(this.base.length) : this.place.array;
-    for (let i = 0; i < moved.length; i++) moved[i] = this.base[i] + scale * u[i];
+    for (let i = 0; i < moved.length; i++) moved[i] = this.base[i] + scale * u[i] + (this.sway ? this.sway.add[i] : 0);
     if (this.turns && this.kind === "fence") this.out = this.turned(moved);
     for (let i = 0; i < this.map.length; i++) {
       const k = this.map[i], known = values !== null && !Number.isNaN(values[k]);
@@ -233,7 +242,9 @@ class Part {
       for (let c = 0; c < 3; c++) position.array[3 * i + c] = moved[3 * k + c] + (up ? up * this.out[3 * k + c] : 0);
     }
     position.needsUpdate = this.place.needsUpdate = this.geometry.attributes.value.needsUpdate = true;
-    if (this.turns && !this.flat) this.turn(moved);
+    if (!this.flat && (this.turns || this.sway)) this.turn(moved);
+    else if (this.bent) this.turnBack();
+    this.bent = !this.flat && !this.turns && this.sway !== null;
     this.geometry.boundingSphere = this.geometry.boundingBox = null;
   }
 }

@@ -25,18 +25,18 @@
     return input;
   };
 
-  // A button that runs through the steps, from the first again after the last, until it is pressed again.
-  function playing(count, now, go) {
+  // A button that runs through so many steps, from the first again after the last, until it is pressed again.
+  function playing(id, what, count, time, now, go) {
     let timer = null;
-    const button = element("button", { id: "play" });
+    const button = element("button", { id, className: "play" });
     const show = () => {
       button.textContent = timer === null ? "▶" : "⏸";
-      button.title = timer === null ? "play the steps" : "pause";
+      button.title = timer === null ? what : "pause";
     };
     const pause = () => { clearInterval(timer); timer = null; show(); };
     button.onclick = () => {
       if (timer !== null) return pause();
-      timer = setInterval(() => go((now() + 1) % count), Math.min(600, Math.max(60, 6000 / count)));
+      timer = setInterval(() => go((now() + 1) % count), time);
       show();
     };
     show();
@@ -84,7 +84,8 @@
     const heading = (text) => element("h4", { textContent: text });
     const fields = Object.keys(MAPS).filter((f) => ON_BODIES.includes(f) ? f in scene.ranges : view.has(f));
     const [bar, showBar] = colourBar(view);
-    at.append(heading("Colour"), choice(fields, s.field, (f) => { s.field = f; showBar(); view.apply(); }), bar);
+    const colours = choice(fields, s.field, (f) => { s.field = f; showBar(); view.apply(); });
+    at.append(heading("Colour"), colours, bar);
     if (scene.bodies.length > 1) {
       const names = ["all bodies", ...scene.bodies.map((b) => b.name)], select = element("select");
       select.append(...names.map((name, i) => element("option", { textContent: name, value: i })));
@@ -95,13 +96,26 @@
     at.append(tick("bands of colour", s.bands, (on) => { s.bands = on; view.apply(); }));
     at.append(tick("mesh", s.mesh, (on) => { s.mesh = on; view.apply(); }));
     showBar();
+    const ofModes = element("div"), ofSteps = element("div");
+    let still = () => {}; // pauses the steps
+    at.append(ofModes, ofSteps);
+    if (scene.modes.length) {
+      vibrations(view, ofModes, heading, (on) => {
+        still();
+        ofSteps.hidden = on;
+        colours.value = s.field;
+        showBar();
+      });
+    }
     if (scene.steps.length > 1) {
       const title = heading("");
       const name = () => { title.textContent = `Step ${view.step.number}, time ${short(view.step.time)}`; };
       const go = (i) => { s.step = i; name(); view.apply(); };
       const input = slider(scene.steps.length, s.step, (i) => { player.pause(); go(i); });
-      const player = playing(scene.steps.length, () => s.step, (i) => { input.value = i; go(i); });
-      at.append(title, element("div", { className: "steps" }, player.button, input));
+      const time = Math.min(600, Math.max(60, 6000 / scene.steps.length));
+      const player = playing("play", "play the steps", scene.steps.length, time, () => s.step, (i) => { input.value = i; go(i); });
+      still = player.pause;
+      ofSteps.append(title, element("div", { className: "steps" }, player.button, input));
       name();
     }
     const title = heading("");
@@ -131,6 +145,28 @@
       view.draw();
       element("a", { href: view.renderer.domElement.toDataURL("image/png"), download: document.title + ".png" }).click();
     } }));
+  }
+
+  // One mode or none, its phase and how far it swings; ``chosen`` is told whether there is one.
+  function vibrations(view, at, heading, chosen) {
+    const s = view.state, select = element("select", { id: "modes" }), before = s.field;
+    const names = ["none: the state itself", ...view.data.modes.map((mode) => mode.name)];
+    select.append(...names.map((name, i) => element("option", { textContent: name, value: i - 1 })));
+    const go = (k) => { s.phase = k / PHASES; view.apply(); };
+    const input = slider(PHASES, 0, (k) => { player.pause(); go(k); });
+    const player = playing("play-mode", "play the mode", PHASES, 40, () => Math.round(PHASES * s.phase), (k) => { input.value = k; go(k); });
+    const far = slider(SWINGS.length, SWINGS.indexOf(s.swing), (i) => { s.swing = SWINGS[i]; view.apply(); });
+    const phase = element("div", { className: "steps", title: "phase" }, player.button, input);
+    const more = element("div", { hidden: true }, phase, heading("How far it swings"), far);
+    select.onchange = () => {
+      s.mode = Number(select.value);
+      if (s.mode < 0) player.pause();
+      s.field = s.mode < 0 ? before : "mode shape";
+      more.hidden = s.mode < 0;
+      chosen(s.mode >= 0);
+      view.apply();
+    };
+    at.append(heading("Mode about the end"), select, more);
   }
 
   function sections(view, at, heading) {

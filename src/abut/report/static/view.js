@@ -29,7 +29,7 @@ class View {
       step: scene.steps.length - 1, scale: 1, bands: false, mesh: this.triangles() < 40000, arrows: !this.flat,
       field: scene.contacts.length ? (this.flat ? "von Mises" : "pressure") : "von Mises",
       bodies: this.bodies.map(() => "solid"), sides: this.sides.map((s) => s.item.role === "contactor"), range: {},
-      of: 0, section: { axis: "", at: 0.5, other: false }, mirrors: scene.mirrors.map(() => false),
+      mode: -1, phase: 0, swing: 0.1, of: 0, section: { axis: "", at: 0.5, other: false }, mirrors: scene.mirrors.map(() => false),
     };
     if (!this.flat) this.ghostTargets();
     this.maps = Object.fromEntries(Object.entries(MAPS).map(([name, stops]) => [name, ramp(stops)]));
@@ -168,7 +168,8 @@ class View {
     this.draw();
   }
 
-  get step() { return this.data.steps[this.state.step]; }
+  // Modes are about the state at the end.
+  get step() { return this.state.mode < 0 ? this.data.steps[this.state.step] : this.data.steps.at(-1); }
 
   // Least and largest value of a field at the nodes over all steps, of all bodies or of the one that is chosen.
   extent(name) {
@@ -188,7 +189,8 @@ class View {
     const s = this.state, [low, high] = this.range(s.field);
     const [, tallest] = this.extent(this.fence());
     const height = tallest > 0 ? (0.12 * this.size) / tallest : 0;
-    const onBodies = ON_BODIES.includes(s.field);
+    const onBodies = ON_BODIES.includes(s.field), mode = this.data.modes[s.mode];
+    for (const part of [...this.bodies, ...this.sides]) part.sway = mode ? sway(part, mode, s.phase, s.swing * this.size) : null;
     for (const part of this.bodies) part.update(this.step, s.scale, s.field, "", 0);
     for (const part of this.sides) part.update(this.step, s.scale, this.flat && onBodies ? this.fence() : s.field, this.fence(), height);
     this.drawArrows();
@@ -296,7 +298,7 @@ class View {
     const s = this.state;
     this.most ||= Math.max(0, ...this.arrows.flatMap((own) => this.data.steps.map((step) => own.largest(step))));
     for (const own of this.arrows) {
-      own.mesh.visible = s.arrows && s.sides[own.item.number] && this.most > 0;
+      own.mesh.visible = s.arrows && s.mode < 0 && s.sides[own.item.number] && this.most > 0;
       own.mesh.material.uniforms.ink.value.setStyle(s.field === "pressure" ? "#22c7e8" : "#12181f", RAW);
       if (own.mesh.visible) own.update(this.step, s.scale, this.most);
     }
