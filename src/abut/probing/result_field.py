@@ -33,7 +33,7 @@ class ResultField:
     A function of points (n, dim) -> (n,), as values of supports and loads may be. Points outside the file's mesh, but by
     less than half of a facet's size, have the value at the nearest point of its surface.
 
-    Attributes
+    Parameters
     ----------
     path : Path
         The file.
