@@ -22,6 +22,7 @@ PAGE = DOCS / "verification" / "features.md"
 HEADER = ["table", "keys", "closed forms", "page", "picture", "`abut check`", "report"]
 APART = ("schema", "parameters", "mesh", "model", "materials", "solids", "solve", "output")  # what every job has
 MADE_OF = {
+    "fields": ("mapped-temperature", "submodel"),
     "stops": ("stop",),
     "start": ("start-plastic", "start-fit"),
     "steps": (),
@@ -48,6 +49,7 @@ x = 0
 y = 0
 """
 WRONG = {  # one entry of each table that cannot be met
+    "fields": '[fields.hot]\nfile = "nowhere.vtu"\narray = "T"\n',
     "supports": '[[supports]]\non = "nowhere"\nx = 0\n',
     "loads": '[[loads]]\nkind = "pressure"\non = "nowhere"\nvalue = 1\n',
     "contacts": '[[contacts]]\ncontactor = "nowhere"\ntarget = "block.top"\n',
@@ -110,7 +112,7 @@ def _keys(schema: Mapping[str, Any], name: str) -> set[str]:
                 yield from below(schema["$defs"][part["$ref"].rsplit("/", 1)[1]])
             elif "properties" in part:
                 yield from part["properties"]
-            for word in ("items", "anyOf", "oneOf", "allOf"):
+            for word in ("items", "anyOf", "oneOf", "allOf", "additionalProperties"):
                 yield from below(part.get(word))
 
     return set(below(schema["properties"][name]))
@@ -118,7 +120,7 @@ def _keys(schema: Mapping[str, Any], name: str) -> set[str]:
 
 def sections(name: str) -> list[tuple[str, str, bool]]:
     """Page and heading of what shows it in an example, and whether there is a picture."""
-    entry = re.compile(rf"^\[{{1,2}}{re.escape(name)}\]{{1,2}}", re.MULTILINE)
+    entry = re.compile(rf"^\[{{1,2}}{re.escape(name)}(\.\w+)?\]{{1,2}}", re.MULTILINE)
     found = []
     for page in (DOCS / "job.md", DOCS / "probes.md"):
         text = page.read_text(encoding="utf-8").split("<!-- begin table job-keys -->")[0]
@@ -144,10 +146,10 @@ def told(name: str) -> str:
 
 def in_report(name: str) -> str:
     """Title of the report's table of them, of the first closed form."""
-    stands = {"stops": "rigid", "start": "", "steps": ""}.get(name, name)
+    stands = {"stops": "rigid", "fields": "", "start": "", "steps": ""}.get(name, name)
     of = closed_forms(name)
     if not stands or not of:
-        return {"start": "note", "steps": "what acts"}.get(name, "")
+        return {"fields": "note", "start": "note", "steps": "what acts"}.get(name, "")
     model = models()[of[0]]
     kinds = {type(record).__name__ for record in _records(model, stands)}
     return next((str(t["title"]) for t in tables(model) for row in t["rows"] if row[0] in kinds), "")

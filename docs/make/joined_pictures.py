@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import tempfile
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,7 +14,8 @@ import abut
 from abut.benchmarks import BENCHMARKS, joined, local_axes, started
 from abut.benchmarks.holds import LOAD, STIFFNESS, STRETCH
 from abut.benchmarks.preloads import sleeve
-from abut.mesh.make import join, rectangle
+from abut.io.vtu import write_vtu
+from abut.mesh.make import join, rectangle, ring
 from page import DOCS, plots
 
 RED, BLUE, GREY = "#b3261e", "#1f5fa8", "#8a95a1"
@@ -252,7 +255,34 @@ def probes() -> None:
     saved(figure, "probe-axes")
 
 
-PICTURES = (lever, probes, start, bolt, couplings, springs, stops, holds, modes)
+def fields() -> None:
+    """Temperatures at the points of one mesh, and where the nodes of another one are."""
+    other = join({"b": ring((1.0, 2.0), (0.0, 120.0), cells=(3, 7), cell="tri3")})
+    mesh = join({"b": ring((1.0, 2.0), (0.0, 120.0), cells=(5, 16), cell="quad8")})
+    warm = 20.0 + 80.0 * np.exp(-3.0 * np.linalg.norm(other.points - (0.9, 0.9), axis=1))
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "thermal.vtu"
+        write_vtu(path, other.points, [(block.kind, block.nodes) for block in other.blocks], {"T": warm})
+        read = abut.result_field(path, "T")(mesh.points)
+    figure, frames = plots().subplots(1, 2, figsize=(7.6, 3.0), constrained_layout=True)
+    shown = None
+    for axes, one, values, corners in ((frames[0], other, warm, 3), (frames[1], mesh, read, 4)):
+        cells = np.concatenate([block.nodes[:, :corners] for block in one.blocks])
+        shown = PolyCollection(one.points[cells], edgecolors=GREY, linewidths=0.4, cmap="inferno")
+        shown.set_array(values[cells].mean(axis=1))
+        shown.set_clim(20.0, 90.0)
+        axes.add_collection(shown)
+        axes.set_aspect("equal")
+        axes.set_xlim(-1.1, 2.1)
+        axes.set_ylim(-0.1, 2.1)
+        axes.axis("off")
+    frames[0].set_title("thermal.vtu", fontsize=9)
+    frames[1].set_title('value = "hot"', fontsize=9)
+    figure.colorbar(shown, ax=frames, shrink=0.8, label="temperature")
+    saved(figure, "result-field")
+
+
+PICTURES = (fields, lever, probes, start, bolt, couplings, springs, stops, holds, modes)
 
 if __name__ == "__main__":
     for draw in PICTURES:

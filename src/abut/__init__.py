@@ -56,6 +56,7 @@ if TYPE_CHECKING:
     from abut.output.options import Output
     from abut.output.pyvista_export import plot, to_pyvista
     from abut.output.results import write
+    from abut.probing.result_field import ResultField, result_field
     from abut.report import write_report
     from abut.solution import Solution
     from abut.solution.beam_forces import BeamForces, beam_forces
@@ -83,17 +84,18 @@ _HOME = {  # of public names that do not come from abut.model
     **dict.fromkeys(("Stop", "Stopped", "add_stops"), "abut.model.stop"),
     **dict.fromkeys(("MidSurface", "mid_surface"), "abut.solution.mid_surface"),
     **dict.fromkeys(("BeamForces", "beam_forces"), "abut.solution.beam_forces"),
+    **dict.fromkeys(("ResultField", "result_field"), "abut.probing.result_field"),
 }  # fmt: skip
 
 __all__ = [
     "AbutError", "Amplitude", "Anisotropic", "ArrudaBoyce", "Axes", "Beam", "BeamForces", "BodyForce", "Buckling",
-    "Centrifugal", "Contact", "ConvergenceError", "Coupling", "Equation", "Force", "FoundContact", "Frequencies",
-    "Gravity", "Hencky", "Hold", "InputError", "Integration", "LinearElastic", "LoadFactor", "Mesh", "MidForce",
-    "MidSupport", "MidSurface", "Model", "Moment", "MooneyRivlin", "NeoHooke", "NodalForce", "Ogden", "Orthotropic",
-    "Output", "OverTemperature", "Penetration", "Plastic", "Preload", "Pressure", "PressureOverclosure", "Probe",
-    "Removal", "Rigid", "Rotation", "Shell", "SingularModelError", "Solid", "Solution", "SolveOptions", "Spring",
-    "Stop", "Stopped", "Support", "Temperature", "Term", "Thick", "Traction", "Yeoh", "add_stops", "add_surfaces",
-    "beam_forces", "check", "find_contacts", "from_meshio", "load_factors", "mid_surface", "plot", "solve", "thicken",
+    "Centrifugal", "Contact", "ConvergenceError", "Coupling", "Equation", "Force", "FoundContact", "Frequencies", "Gravity",
+    "Hencky", "Hold", "InputError", "Integration", "LinearElastic", "LoadFactor", "Mesh", "MidForce", "MidSupport",
+    "MidSurface", "Model", "Moment", "MooneyRivlin", "NeoHooke", "NodalForce", "Ogden", "Orthotropic", "Output",
+    "OverTemperature", "Penetration", "Plastic", "Preload", "Pressure", "PressureOverclosure", "Probe", "Removal",
+    "ResultField", "Rigid", "Rotation", "Shell", "SingularModelError", "Solid", "Solution", "SolveOptions", "Spring", "Stop",
+    "Stopped", "Support", "Temperature", "Term", "Thick", "Traction", "Yeoh", "add_stops", "add_surfaces", "beam_forces",
+    "check", "find_contacts", "from_meshio", "load_factors", "mid_surface", "plot", "result_field", "solve", "thicken",
     "to_pyvista", "write", "write_report",
 ]  # fmt: skip
 

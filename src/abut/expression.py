@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import math
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from functools import reduce
 
@@ -44,16 +44,33 @@ class Expression:
     """
 
     text: str
+    named: tuple[
+        tuple[str, Callable[[Array], Array]], ...
+    ] = ()  # functions of points whose values may stand in it by name
 
     def __post_init__(self) -> None:
-        _check(_parsed(self.text))
+        _check(_parsed(self.text), tuple(dict(self.named)))
 
     def __call__(self, points: Array) -> Array:
         """At points (n, dim): (n,). Raises InputError for z in two dimensions."""
         names = {name: np.float64(value) for name, value in CONSTANTS.items()} | dict(zip(AXES, points.T))
+        used = _names(_parsed(self.text))
+        names |= {name: function(points) for name, function in self.named if name in used}
         with np.errstate(all="ignore"):  # whoever asks refuses what is no number, and says where
             value = _value(_parsed(self.text), names)
         return np.array(np.broadcast_to(np.asarray(value, dtype=float), len(points)))
+
+
+def mentions(text: str, names: Collection[str]) -> bool:
+    """Whether an expression has one of some names in it; not where it is none."""
+    try:
+        return not _names(_parsed(text)).isdisjoint(names)
+    except InputError:
+        return False
+
+
+def _names(tree: ast.expr) -> set[str]:
+    return {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
 
 
 @dataclass(frozen=True)
@@ -67,20 +84,21 @@ class Expressions:
         return np.column_stack([component(points) for component in self.components])
 
 
-def with_names(text: str, names: Mapping[str, float]) -> float | str:
+def with_names(text: str, names: Mapping[str, float], fields: Collection[str] = ()) -> float | str:
     """An expression in which numbers have names: its value, or, where it depends on the position, the expression of x, y, z
-    that is left. Raises InputError for what is no expression, names that are not known, and values that are no numbers.
+    (and of ``fields``, names of functions of them) that is left. Raises InputError for what is no expression, names that are
+    not known, and values that are no numbers.
 
     >>> with_names("2*r + 1", {"r": 0.5}), with_names("r*x", {"r": 0.5})
     (2.0, '0.5 * x')
     """
     tree = _parsed(text)
     for node in ast.walk(tree):
-        if isinstance(node, ast.Name) and node.id not in (*names, *AXES, *CONSTANTS, *FUNCTIONS, *OF_TWO):
-            raise InputError(f"unknown name {node.id!r}{nearest(node.id, (*names, *AXES, *CONSTANTS))}")
+        if isinstance(node, ast.Name) and node.id not in (*names, *AXES, *CONSTANTS, *FUNCTIONS, *OF_TWO, *fields):
+            raise InputError(f"unknown name {node.id!r}{nearest(node.id, (*names, *AXES, *CONSTANTS, *fields))}")
     left = ast.fix_missing_locations(_Numbers(names).visit(tree))
-    _check(left)
-    if any(isinstance(node, ast.Name) and node.id in AXES for node in ast.walk(left)):
+    _check(left, fields)
+    if not _names(left).isdisjoint((*AXES, *fields)):
         return ast.unparse(left)
     with np.errstate(all="ignore"):
         value = float(_value(left, {name: np.float64(value) for name, value in CONSTANTS.items()}))  # type: ignore[misc]
@@ -114,24 +132,25 @@ def _parsed(text: str) -> ast.expr:
         raise InputError(f"cannot read {text!r} as an expression of x, y, z such as '0.1 + 0.2*x'") from None
 
 
-def _check(tree: ast.expr) -> None:
+def _check(tree: ast.expr, named: Collection[str] = ()) -> None:
     """Raises InputError for what an expression cannot hold."""
     level = [tree]
     for _ in range(DEEPEST):
-        level = [part for node in level for part in _parts(node)]
+        level = [part for node in level for part in _parts(node, named)]
         if not level:
             return
     raise InputError("too many operations within each other; give a function in Python instead")
 
 
-def _parts(node: ast.expr) -> list[ast.expr]:
-    """What a node is made of, if it is one that is known."""
+def _parts(node: ast.expr, named: Collection[str] = ()) -> list[ast.expr]:
+    """What a node is made of, if it is one that is known; ``named``: names beside those of coordinates and constants."""
     if isinstance(node, ast.Constant):
         _number(node)
         return []
     if isinstance(node, ast.Name):
-        if node.id not in (*AXES, *CONSTANTS):
-            raise InputError(f"unknown name {node.id!r}{nearest(node.id, (*AXES, *CONSTANTS, *FUNCTIONS, *OF_TWO))}")
+        if node.id not in (*AXES, *CONSTANTS, *named):
+            known = (*AXES, *CONSTANTS, *named, *FUNCTIONS, *OF_TWO)
+            raise InputError(f"unknown name {node.id!r}{nearest(node.id, known)}")
         return []
     if isinstance(node, ast.UnaryOp) and type(node.op) in SIGNS:
         return [node.operand]
@@ -177,7 +196,7 @@ def _value(node: ast.expr, names: Mapping[str, Array]) -> Array:
         if node.id not in names:
             raise InputError("z: positions have x and y alone in two dimensions")
         return names[node.id]
-    values = [_value(part, names) for part in _parts(node)]
+    values = [_value(part, names) for part in _parts(node, names)]
     if isinstance(node, ast.UnaryOp):
         result = SIGNS[type(node.op)](values[0])
     elif isinstance(node, (ast.BinOp, ast.BoolOp)):

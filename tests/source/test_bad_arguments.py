@@ -18,7 +18,16 @@ from abut.mesh import make
 BARE = (AttributeError, KeyError, IndexError, TypeError, ValueError)
 NOTHING = (None, 3, "", 3.5, [], {})  # what a user may have in a variable that should hold something else
 ERRORS = {name for name in abut.__all__ if isinstance(getattr(abut, name), type) and "Error" in name}
-RESULTS = {"BeamForces", "FoundContact", "LoadFactor", "MidSurface", "Solution", "Stopped", "Thick"}  # abut makes these
+RESULTS = {
+    "BeamForces",
+    "FoundContact",
+    "LoadFactor",
+    "MidSurface",
+    "ResultField",
+    "Solution",
+    "Stopped",
+    "Thick",
+}  # abut makes these
 LISTS = (
     "solids", "supports", "loads", "contacts", "equations", "rigid", "probes", "rotations", "couplings", "preloads",
     "springs", "holds", "penetrations",
@@ -101,6 +110,7 @@ VALID: dict[str, tuple[dict[str, Any], Callable[[Any], object]]] = {  # argument
     "add_surfaces": ({"mesh": MESH, "found": ()}, kept),
     "check": ({"model": MODEL}, kept),
     "find_contacts": ({"mesh": MESH}, kept),
+    "result_field": ({"path": "none.vtu", "array": "T"}, kept),
     "from_meshio": ({"mesh": SimpleNamespace(points=MESH.points, cells=[("quad", b.nodes) for b in MESH.blocks])}, kept),
 }  # fmt: skip
 OF_SOLUTIONS = {

@@ -27,6 +27,7 @@ from abut.benchmarks import (
     layers,
     loads,
     local_axes,
+    mapped,
     modes,
     onset,
     patch,
@@ -80,6 +81,7 @@ BENCHMARKS: dict[str, Benchmark] = {
         *started.BENCHMARKS,
         *joined.BENCHMARKS,
         *modes.BENCHMARKS,
+        *mapped.BENCHMARKS,
         *penetration.BENCHMARKS,
     )
 }

@@ -134,20 +134,8 @@ def read_vtu(path: Path) -> RawMesh:
     """
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise InputError(f"cannot read mesh file {path}: {error.strerror}") from None
-    if b"UnstructuredGrid" not in data[:4096]:
-        raise InputError(
-            f"{path}: not a readable VTU file (no UnstructuredGrid in its head); save it as VTK XML unstructured grid"
-        )
-    _check_counts(path, data)
-    grid = _load(path)
-    if grid is None or grid.GetNumberOfCells() == 0:
-        raise InputError(f"{path}: not a readable VTU file with cells (truncated or of another kind?); write it again")
+    grid, kinds = load_grid(path)
     points = vtk_to_numpy(grid.GetPoints().GetData()).astype(float)
-    kinds = vtk_to_numpy(_cell_types(grid)).astype(np.int64)
     offsets = vtk_to_numpy(grid.GetCells().GetOffsetsArray())
     nodes = vtk_to_numpy(grid.GetCells().GetConnectivityArray())
     unknown = sorted(set(kinds.tolist()) - set(VTK_KIND))
@@ -173,6 +161,25 @@ def read_vtu(path: Path) -> RawMesh:
             groups.setdefault(name, {}).setdefault(kind, []).append(rows[value[cells] == r])
     joined = {name: {k: np.concatenate(v) for k, v in parts.items()} for name, parts in groups.items()}
     return RawMesh(points, joined)
+
+
+def load_grid(path: Path) -> tuple[Foreign, NDArray[np.int64]]:
+    """VTK's grid of a file, with cells, and VTK's code of each. Raises InputError for files that VTK cannot read."""
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"cannot read mesh file {path}: {error.strerror}") from None
+    if b"UnstructuredGrid" not in data[:4096]:
+        raise InputError(
+            f"{path}: not a readable VTU file (no UnstructuredGrid in its head); save it as VTK XML unstructured grid"
+        )
+    _check_counts(path, data)
+    grid = _load(path)
+    if grid is None or grid.GetNumberOfCells() == 0:
+        raise InputError(f"{path}: not a readable VTU file with cells (truncated or of another kind?); write it again")
+    return grid, vtk_to_numpy(_cell_types(grid)).astype(np.int64)
 
 
 def _check_counts(path: Path, data: bytes) -> None:

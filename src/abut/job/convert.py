@@ -157,9 +157,9 @@ def _plain(record: Any) -> Json:
 
 def _value(value: Any, name: str) -> Any:
     if isinstance(value, Expression):
-        return value.text
+        return _text(value, name)
     if isinstance(value, Expressions):
-        return [component.text for component in value.components]
+        return [_text(component, name) for component in value.components]
     if callable(value) and not isinstance(value, Amplitude):
         raise InputError(f"{name}: a job file holds numbers and expressions of position, not functions")
     if isinstance(value, Mapping):
@@ -171,6 +171,15 @@ def _value(value: Any, name: str) -> Any:
     if isinstance(value, (list, tuple)):
         return [_value(item, name) for item in value]
     return value if isinstance(value, (str, int, float)) else _plain(value)
+
+
+def _text(value: Expression, name: str) -> str:
+    if value.named:
+        raise InputError(
+            f"{name}: {value.text!r} has values of result files in it, which a job that is written anew does not keep; "
+            "keep [fields] in the job that you have"
+        )
+    return value.text
 
 
 def toml(table: Mapping[str, object]) -> str:

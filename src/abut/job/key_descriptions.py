@@ -22,6 +22,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "schema": "version of this format, always 1",
         "parameters": 'numbers by name, or expressions of those above; any value of the job may be a text "= ..." of them; '
         "abut run --set NAME=VALUE changes them",
+        "fields": "values of result files, by the name that they have in expressions of supports and loads",
         "mesh": "where the mesh comes from: a file, or bodies made by abut",
         "model": "what kind of model it is",
         "materials": "materials by name",

@@ -18,7 +18,8 @@ from abut.job.contacts import Resolved, resolve_contacts
 from abut.job.load_tables import LOADS
 from abut.job.material_tables import MATERIALS
 from abut.job.other_names import key_called, kind_said
-from abut.job.parameters import parameters, worked_out
+from abut.job.parameters import field_names, parameters, worked_out
+from abut.job.result_fields import Named, read_fields, told, with_fields
 from abut.job.schema import EquationTable, JobFile, MeshTable
 from abut.job.start import Start
 from abut.job.thin import with_thin
@@ -107,14 +108,16 @@ def load_job(
         raise InputError(f"{path}: schema: expected 1, got {data.get('schema')!r}; begin the file with 'schema = 1'")
     try:
         names = parameters(data, settings or {})
-        file = JobFile.model_validate(with_shares(worked_out(data, names)))
+        shares = with_shares(worked_out(data, names))
+        file = JobFile.model_validate(shares, context=field_names(data))
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
     except ValidationError as error:
         problems = "\n  ".join(_explain(dict(e), data) for e in error.errors())
         raise InputError(f"{path}:\n  {problems}") from None
     try:
-        model, resolved = _model(file, path.parent, refine)
+        named = read_fields(file.fields, names, path.parent, path.parent / file.output.directory)
+        model, resolved = _model(file, path.parent, refine, named)
         table = file.output
         output = Output(table.steps, tuple(table.fields), tuple(table.formats), table.compression, table.restart)
     except InputError as error:
@@ -126,7 +129,7 @@ def load_job(
     steps = acting(model, parts(file.steps, model.solve.end)) if file.steps else ()
     if start is not None:
         steps = (f"starts from the steps in {start.results}, up to time {model.solve.said(start.share)}", *steps)
-    notes = (*said, *model.mesh.notes, *resolved.notes, *steps)
+    notes = (*said, *told(named), *model.mesh.notes, *resolved.notes, *steps)
     return Job(
         model,
         path.parent / file.output.directory,
@@ -158,7 +161,7 @@ def _deck(path: Path, refine: int, ignore: Collection[str], soft: bool) -> Job:
     )
 
 
-def _model(file: JobFile, folder: Path, refine: int) -> tuple[Model, Resolved]:
+def _model(file: JobFile, folder: Path, refine: int, named: Named) -> tuple[Model, Resolved]:
     materials = _materials(file.materials)
     thin = with_thin(file, folder, _mesh(file.mesh, folder, refine))
     solids = []
@@ -177,14 +180,14 @@ def _model(file: JobFile, folder: Path, refine: int) -> tuple[Model, Resolved]:
         solids=solids,
         supports=[
             *(
-                Support(**values(s, f"supports[{i}]", TURNS))
+                Support(**with_fields(values(s, f"supports[{i}]", TURNS), named, f"supports[{i}]"))
                 for i, s in enumerate(file.supports)
                 if i not in thin.supports
             ),
             *thin.thick.supports,
         ],
         loads=[
-            *(_load(load, f"loads[{i}]") for i, load in enumerate(file.loads) if i not in thin.loads),
+            *(_load(load, f"loads[{i}]", named) for i, load in enumerate(file.loads) if i not in thin.loads),
             *thin.thick.loads,
         ],
         contacts=[*resolved.contacts, *stopped.contacts],
@@ -242,8 +245,8 @@ def _material(name: str, table: Any, others: Mapping[str, Material]) -> Material
         raise InputError(f"materials.{name}.{error}") from None
 
 
-def _load(table: BaseModel, where: str) -> Load:
-    given = values(table, where, ("moment",))
+def _load(table: BaseModel, where: str, named: Named) -> Load:
+    given = with_fields(values(table, where, ("moment",)), named, where)
     made: Load = LOADS[given.pop("kind")](**given)
     return made
 

@@ -11,6 +11,7 @@ from abut.types import Json
 
 MARK = "="  # what a text that is to be worked out begins with
 TABLE = "parameters"
+FIELDS = "fields"
 
 
 def read_settings(texts: Sequence[str]) -> dict[str, str]:
@@ -39,10 +40,7 @@ def parameters(data: Json, settings: Mapping[str, float | str]) -> dict[str, flo
             raise InputError(f"--set: no parameter named {name!r} in [{TABLE}]{nearest(name, given)}")
     result: dict[str, float] = {}
     for name, value in given.items():
-        if not name.isidentifier() or name in (*AXES, *CONSTANTS, *FUNCTIONS, *OF_TWO):
-            raise InputError(
-                f"{TABLE}.{name}: not a name to use in expressions; take letters, digits and _, none of abut's own"
-            )
+        _check_name(name, TABLE)
         result[name] = _value(
             settings.get(name, value), result, f"--set {name}" if name in settings else f"{TABLE}.{name}"
         )
@@ -53,7 +51,25 @@ def worked_out(data: Json, names: Mapping[str, float]) -> Json:
     """A job's tables with every text "=..." as its number, or, where it depends on x, y, z, as an expression of these.
 
     Whole numbers are integers, as counts of cells must be. Raises InputError with the place of what cannot be worked out."""
-    return {key: value if key == TABLE else _inside(value, names, key) for key, value in data.items()}
+    fields = field_names(data)
+    return {key: value if key == TABLE else _inside(value, names, key, fields) for key, value in data.items()}
+
+
+def field_names(data: Json) -> tuple[str, ...]:
+    """Names of values of result files. Raises InputError for those that cannot be used."""
+    given = data.get(FIELDS)
+    if not isinstance(given, dict):
+        return ()
+    for name in given:
+        _check_name(name, FIELDS)
+    return tuple(given)
+
+
+def _check_name(name: str, table: str) -> None:
+    if not name.isidentifier() or name in (*AXES, *CONSTANTS, *FUNCTIONS, *OF_TWO):
+        raise InputError(
+            f"{table}.{name}: not a name to use in expressions; take letters, digits and _, none of abut's own"
+        )
 
 
 def _value(value: Any, names: Mapping[str, float], where: str) -> float:
@@ -67,15 +83,15 @@ def _value(value: Any, names: Mapping[str, float], where: str) -> float:
     return float(value)
 
 
-def _inside(value: Any, names: Mapping[str, float], where: str) -> Any:
+def _inside(value: Any, names: Mapping[str, float], where: str, fields: Sequence[str]) -> Any:
     if isinstance(value, dict):
-        return {key: _inside(item, names, f"{where}.{key}") for key, item in value.items()}
+        return {key: _inside(item, names, f"{where}.{key}", fields) for key, item in value.items()}
     if isinstance(value, list):
-        return [_inside(item, names, f"{where}[{i}]") for i, item in enumerate(value)]
+        return [_inside(item, names, f"{where}[{i}]", fields) for i, item in enumerate(value)]
     if not (isinstance(value, str) and value.lstrip().startswith(MARK)):
         return value
     try:
-        number = with_names(value.lstrip().removeprefix(MARK), names)
+        number = with_names(value.lstrip().removeprefix(MARK), names, fields)
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
     return int(number) if isinstance(number, float) and number.is_integer() and abs(number) < 2**53 else number

@@ -33,6 +33,11 @@ RUN: dict[str, dict[str, str]] = {
         "period": "how long it takes",
         "increments": "load steps in it, of equal length; kinematics finite finds them where none of the steps has any",
     },
+    "ResultFieldTable": {
+        "file": "result file beside the job file: .vtu, or .frd as text, of which the last step counts",
+        "array": "name of the values at its points, such as temperature, displacement; in .frd files NDTEMP, DISP",
+        "component": "of a vector or tensor: its name in the file, x, y or z of a vector, or its number from 0",
+    },
     "StartTable": {
         "results": "folder of the results of the other job, beside the job file; it was run with output.restart = true",
         "time": "the time in this job at which the other one's end is: a name of a step, or a number",

@@ -29,6 +29,14 @@ class StepTable(Table):
     increments: Annotated[int, Field(ge=1)] = 1
 
 
+class ResultFieldTable(Table):
+    """values of a result file, which expressions over position have by name"""
+
+    file: str
+    array: str
+    component: str | int | None = None
+
+
 class StartTable(Table):
     """steps of another job that this one begins with"""
 

@@ -11,7 +11,7 @@ from abut.job.derived import Of, table_of
 from abut.job.key_descriptions import describe
 from abut.job.load_tables import LOAD
 from abut.job.material_tables import MATERIAL, AxesTable
-from abut.job.run_tables import BUCKLING, FREQUENCIES, SOLVE, OutputTable, StartTable, StepTable
+from abut.job.run_tables import BUCKLING, FREQUENCIES, SOLVE, OutputTable, ResultFieldTable, StartTable, StepTable
 from abut.job.table import Number, OneOf, Points, Table, Time, Varying
 from abut.model import Hold, Penetration, Preload, Removal, Rotation, Spring
 from abut.model.contact import GEOMETRIES, KINDS, LAWS, METHODS, PRESSURES, RULES, Contact, Integration
@@ -233,6 +233,7 @@ class JobFile(Table):
 
     schema_: Literal[1] = Field(alias="schema")
     parameters: dict[str, Number | str] = {}
+    fields: dict[str, ResultFieldTable] = {}
     mesh: MeshTable
     model: ModelTable = ModelTable()
     materials: dict[str, Annotated[Table, MATERIAL]]

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, WithJsonSchema
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationInfo, WithJsonSchema
 from pydantic_core import PydanticCustomError
 from pydantic_core.core_schema import CoreSchema, literal_schema
 
 from abut.errors import InputError
+from abut.expression import mentions
 from abut.fields import number_or_field
 
 
@@ -35,10 +36,13 @@ class OneOf:
         return literal_schema(list(self.choices))
 
 
-def _varying(value: object) -> object:
-    """The value if it is a number or an expression, which the model's own record makes of it."""
+def _varying(value: object, info: ValidationInfo) -> object:
+    """The value if it is a number or an expression, which the model's own record makes of it; the context of a job are names
+    of functions of position that it may have."""
     if isinstance(value, bool) or not isinstance(value, (str, int, float)):
         raise PydanticCustomError("varying", "Input should be a number or an expression of x, y, z")
+    if isinstance(value, str) and mentions(value, info.context or ()):
+        return value
     try:
         number_or_field(value, "")
     except InputError as error:
