@@ -10,6 +10,7 @@ import pytest
 from scipy.optimize import brentq
 
 import abut
+from abut.io.deck.time_histories import tidy
 from models.decks import load, step
 
 E = 1000.0
@@ -141,3 +142,9 @@ def test_of_values_given_twice_the_later_one_holds(tmp_path: Path) -> None:
     assert heights(tmp_path, held, 1) == pytest.approx([0.01], rel=1e-9)
     loads = BAR + step("*DLOAD", "1, P2, 4.", "*DLOAD", "1, P2, 10.")
     assert heights(tmp_path, loads, 1) == pytest.approx([0.014], rel=1e-9)
+
+
+def test_of_two_values_at_one_time_the_later_one_holds() -> None:
+    """A course is a function of time, and points on the line between their neighbours say nothing."""
+    assert tidy([(0.0, 0.0), (1.0, 1.0), (1.0, 2.0), (2.0, 3.0)]) == ((0.0, 0.0), (1.0, 2.0), (2.0, 3.0))
+    assert tidy([(0.0, 0.0), (0.5, 1.0), (1.0, 2.0), (1.0, 2.0), (1.0, 2.0)]) == ((0.0, 0.0), (1.0, 2.0))

@@ -53,6 +53,33 @@ def press(n: int = 4, cell: str = "hex8", height: float = 1.0, **options: Any) -
     )
 
 
+def swinging(kinematics: str) -> Any:
+    """A heavy surface that swings under forces that act from the start on, and comes into contact: terms with rates."""
+    import abut
+    from abut.mesh.make import join, rectangle
+    from abut.model.rates import Newmark
+    from models.inertia import Inertia
+
+    mesh = join(
+        {
+            "beam": rectangle((0.0, 8.0), (0.2, 1.2), (16, 2), "quad4"),
+            "stop": rectangle((5.0, 9.0), (-1.0, 0.0), (7, 2), "quad4"),
+        }
+    )
+    at_once = abut.Amplitude(((0.0, 1.0), (1.0, 1.0)))
+    return abut.Model(
+        mesh,
+        [abut.Solid(body, abut.LinearElastic(2000.0, 0.3)) for body in ("beam", "stop")],
+        [abut.Support(where, x=0.0, y=0.0) for where in ("beam.left", "stop.bottom")],
+        [abut.Traction("beam.right", (0.0, -2.0), amplitude=at_once)],
+        contacts=[abut.Contact(contactor="beam.bottom", target="stop.top")],
+        plane="strain",
+        kinematics=kinematics,
+        solve=abut.SolveOptions(steps=6),
+        physics=[Inertia("beam.right", 0.7, 0.1), Newmark(3.0)],
+    )
+
+
 def alone() -> Any:
     """A block under its own weight, without any contact."""
     import abut
@@ -238,6 +265,8 @@ CASES: dict[str, Callable[[], Any]] = {
     "metal": metal,
     "metal-finite": lambda: metal("finite"),
     "softening": softening,
+    "swinging": lambda: swinging("small"),
+    "swinging-finite": lambda: swinging("finite"),
     "volumes": volumes,
     "volumes-finite": lambda: volumes("finite"),
     "volumes-rubber": rubber_volumes,

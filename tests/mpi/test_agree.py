@@ -71,6 +71,14 @@ def test_materials_with_a_history(mpirun: Run, case: str) -> None:
         assert "direct" in row["solver"]
 
 
+@pytest.mark.parametrize("n", [1, 2, 3])
+def test_terms_with_rates(mpirun: Run, n: int) -> None:
+    """Newmark's method and masses that a user's physics adds, with contact that closes on the way, small and finite."""
+    for row in compared(mpirun, n, ["swinging", "swinging-finite"]).values():
+        assert "direct" in row["solver"]
+        assert row["solutions"] == row["alone"]
+
+
 @pytest.mark.parametrize("n", [1, 2])
 def test_the_constraint_function_by_multigrid(mpirun: Run, n: int) -> None:
     """Its rows look at points: where it is all closed, and where contact ends within a facet."""

@@ -12,7 +12,7 @@ from abut.nonlinear.settings import DEFAULT
 from abut.problem.onset import Onset
 
 YOUNG, LENGTH, HEIGHT, PRESSURE, FRICTION = 1e5, 20.0, 0.5, 10.0, 0.3
-POINTS, SMALLEST = DEFAULT.steps.points, DEFAULT.steps.smallest
+POINTS, AIM, SMALLEST = DEFAULT.steps.points, DEFAULT.steps.aim, DEFAULT.steps.smallest
 FINER = 1.0 / POINTS  # of a step that jumps over the onset
 FULL = FRICTION * PRESSURE * LENGTH  # force under which all of the bar slips
 REACH = FULL * LENGTH / (2.0 * YOUNG * HEIGHT)  # displacement of its end then
@@ -157,3 +157,71 @@ def test_where_slip_turns_the_next_step_is_twice_as_long_at_most() -> None:
     begin = pace.end
     pace.take(5, onset=turning)
     assert begin < pace.end <= 3.0 * begin * (1.0 + 1e-12)
+
+
+def test_a_step_that_no_line_misses_is_followed_by_one_of_any_length() -> None:
+    """Whatever begins to slip in it, as long as the tractions go straight."""
+    pace = Pace([1.0], first=1.0, slips=Slips())
+    assert not pace.refine(Onset(fresh=1.0, bent=0.0, sticks=0.5, limit=1.0))
+    assert pace.end == 1.0
+
+
+@pytest.mark.parametrize(("fresh", "refused"), [(1.9 / POINTS, False), (2.1 / POINTS, True)])
+def test_a_step_is_refused_where_less_than_half_of_it_would_do(fresh: float, refused: bool) -> None:
+    """Theory (R21): a point of the onset for each ``POINTS``-th part of friction."""
+    pace = Pace([1.0], first=1.0, slips=Slips())
+    assert pace.refine(Onset(fresh=fresh, bent=1e6, limit=1.0)) is refused
+
+
+def test_a_step_need_be_no_shorter_than_one_of_so_many_points() -> None:
+    """However far a straight line misses the tractions: (R21) asks for a ``POINTS``-th of friction in a step."""
+    pace = Pace([1.0], first=1.0, slips=Slips())
+    assert pace.refine(Onset(fresh=1.0, bent=1.0, limit=1.0))
+    begin = pace.end
+    pace.take(5, onset=Onset(fresh=1.0 / POINTS, bent=1e6, sticks=0.5, limit=1.0))
+    assert 2.0**-0.25 * AIM <= (pace.end - begin) / begin <= AIM * (1.0 + 1e-9)
+
+
+def test_where_all_slips_only_its_turns_make_the_next_step_shorter() -> None:
+    """What began to slip has done so, and goes on along its line."""
+    pace = Pace([1.0], first=1.0, slips=Slips())
+    assert pace.refine(Onset(fresh=1.0, bent=1.0, limit=1.0))
+    pace.take(5, onset=Onset(fresh=0.5, turns=0.0, bent=1.0, sticks=0.0, limit=1.0))
+    assert pace.end == 1.0
+
+
+def test_a_fit_alone_says_nothing_of_the_step_after_it() -> None:
+    """A first step as short as can be shows what presses before loads do anything: the next one is as long as ever, and
+    tractions do not go on as in it."""
+    pace, usual = Pace([1.0], slips=Slips(fits=True)), Pace([1.0])
+    assert pace.end == SMALLEST
+    pace.take(100, onset=Onset(fresh=1.0, bent=1.0, sticks=0.5, limit=1.0))
+    assert not pace.goes_on
+    assert pace.end is not None
+    assert pace.end - SMALLEST == pytest.approx(usual.end)
+
+
+def test_after_a_leg_tractions_do_not_go_on() -> None:
+    pace = Pace([0.5, 1.0], legs=(0.5,), slips=Slips())
+    while pace.time < 0.5:
+        pace.take(5, onset=Onset(sticks=0.5, limit=1.0))
+        assert pace.goes_on is (pace.time < 0.5)
+
+
+def test_a_stride_is_taken_whatever_the_onset_asked_for() -> None:
+    pace = Pace([1.0], first=1.0, slips=Slips())
+    assert pace.refine(Onset(fresh=1.0, bent=1.0, limit=1.0))
+    pace.stride(0.25)
+    assert pace.end == 0.25
+
+
+def test_a_run_that_the_onset_cut_is_followed() -> None:
+    """A restart knows where steps ended, not what asked for it: lengths that halving does not lead to."""
+    pace = Pace([1.0], first=1.0, slips=Slips())
+    onset = Onset(fresh=0.1, bent=1e-4, sticks=0.5, limit=1.0)
+    assert pace.refine(Onset(fresh=0.3, bent=1.0, limit=1.0))
+    time = pace.end
+    pace.take(5, onset=onset)
+    followed = Pace([1.0], first=1.0, slips=Slips())
+    followed.repeat(time, 5, onset=onset)
+    assert (followed.time, followed.end) == (time, pace.end)

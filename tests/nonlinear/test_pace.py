@@ -172,6 +172,27 @@ def test_given_numbers_and_times() -> None:
     assert ends(pace_of("auto", (0.2, 0.9), (None,)), 2) == [0.2, 0.9]
 
 
+def test_a_goal_on_the_way_does_not_shorten_the_steps_after_it() -> None:
+    pace = Pace([0.3 * FIRST, 1.0])
+    pace.take(EASY)
+    assert pace.time == 0.3 * FIRST
+    assert pace.end == pytest.approx(0.3 * FIRST + GROWTH * FIRST)
+
+
+@pytest.mark.parametrize("steps", [3, 6, 7, 10, 30, 49, 100])
+def test_as_many_steps_as_were_asked_for(steps: int) -> None:
+    """Sums of their length differ from the end by rounding, which makes no further step."""
+    found = ends(pace_of(steps, None, (None,)), EASY + 1)
+    assert found == pytest.approx([k / steps for k in range(1, steps + 1)], rel=1e-12)
+    assert found[-1] == 1.0
+
+
+def test_a_stride_is_no_longer_than_the_longest_step() -> None:
+    pace = Pace([1.0], longest=0.25)
+    pace.stride(0.5)
+    assert pace.end == 0.25
+
+
 def test_an_earlier_run_is_followed() -> None:
     pace, followed = Pace([1.0]), Pace([1.0])
     done = []

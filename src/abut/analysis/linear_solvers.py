@@ -25,8 +25,9 @@ def assembled_bodies(
 ) -> Backend:
     """The stiffness of a model's bodies, assembled here or by a team. Raises InputError for fields that a team does not
     know."""
-    if team is not None and model.physics:
-        raise InputError("physics: fields beside displacements are solved on one process; start one only")
+    if team is not None and (more := [field.name for field in model.dofs.fields[1:]]):
+        names = ", ".join(f"'{name}'" for name in more)
+        raise InputError(f"physics: fields beside displacements ({names}) are solved on one process; start one only")
     if team is not None and model.removals:
         raise InputError("removals: bodies that go and come are solved on one process; start one only")
     if team is None:

@@ -108,7 +108,8 @@ class Model:
     springs, holds, penetrations : sequences of Spring, of Hold and of Penetration
         Springs to ground, between points, beds; supports that come or go; fluids that enter contacts.
     physics : sequence of abut.model.physics.Physics
-        Fields beside displacements, with terms of their own in the balance; on one process, with the direct solver.
+        Terms of one's own in the balance, with rates if wanted; fields beside displacements, on one process. By direct
+        solvers.
     modes, removals : sequences of Frequencies and Buckling, of Removal
         What is found about the state at the end of the last step, on one process; bodies that go, and may come back.
 

@@ -105,9 +105,10 @@ class Programme:
         return result
 
     def undecided(self, here: Interior) -> NDArray[np.bool_]:
-        """(n,) multipliers that are neither closing nor opening."""
+        """(n,) multipliers that are neither closing nor opening: pressures that neither stay nor go to nothing."""
         result = np.zeros(len(here.state.multipliers), dtype=bool)
-        result[self.normal] = np.abs(here.closing + 0.5) < self.settings.interior.undecided
+        near = self.settings.interior.worth
+        result[self.normal] = (here.closing > near - 1.0) & (here.closing < -near)
         return result
 
 

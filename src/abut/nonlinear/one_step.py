@@ -107,9 +107,10 @@ class Strength:
     failed: bool = False
 
     def grow(self) -> bool:
-        """After a part that failed; whether it may."""
+        """After a part that failed; whether it may: up to where the bodies' own stiffness is as slight beside it as it was
+        beside that to begin with."""
         self.share, self.fall, self.failed = self.share * 0.5 * self.settings.drag.change, 1.0, True
-        return self.share <= self.settings.drag.greatest
+        return self.share * self.settings.drag.slight <= 1.0
 
     def ease(self, iterations: int) -> None:
         """After one that took so many."""
@@ -179,7 +180,7 @@ def stabilised(setting: Setting, before: State, time: float) -> Led:
         left = float(np.abs(force).max(initial=0.0)) / here.largest.force
         most = max(most, left)
         assert part.balance is not None
-        loose = loosely_held(problem, part.balance, here, settings.holding.weak)
+        loose = loosely_held(problem, part.balance, here, asked.slight)
         if loose and left <= settings.newton.balanced:
             return Led((*parts[:-1], replace(parts[-1], whole=True)))
         least = strength.share <= settings.newton.balanced

@@ -94,10 +94,6 @@ class HoldingSettings:
         0.1, "facets", "an iteration may move bodies along motions that nothing resists",
         "test_corners.py::test_pin_that_falls",
     )  # fmt: skip
-    weak: float = _of(
-        1e-3, "of the strongest resistance", "to a rigid motion, below which a body is hardly held",
-        "test_stabilised.py::test_a_ball_on_one_node_rolls_half_as_far_as_its_plate",
-    )  # fmt: skip
     gone: float = _of(
         2.0, "sizes of the model", "beyond which a body has flown off",
         "test_stabilised.py::test_bodies_that_are_gone",
@@ -109,10 +105,10 @@ class DragSettings:
     """A drag that leads a step, theory (G23). Relative forces are over the largest of the step."""
 
     slight: float = _of(
-        1e-3, "of the stiffness, of the largest force", "drag to begin with, at which bodies are all but at rest",
+        1e-3, "of the stiffness, of the largest force, of the strongest resistance to a rigid motion",
+        "drag to begin with, at which bodies are all but at rest; what contact holds by less, such a drag holds rather",
         "test_stabilised.py",
     )  # fmt: skip
-    greatest: float = _of(1e2, "of the stiffness", "drag at most", "test_stabilised.py")
     change: float = _of(10.0, "drag over the last one", "at most from part to part", "test_stabilised.py")
 
 
@@ -136,8 +132,10 @@ class InteriorSettings:
     boundary: float = _of(0.995, "of the way to it", "that a step goes", "test_search.py")
     central: float = _of(1e-3, "of the mean product", "that the smallest keeps", "test_search.py")
     farther: float = _of(0.3, "of a step", "that a corrector aims to gain", "test_search.py")
-    worth: float = _of(0.1, "of that gain, of the product aimed at", "below which it is none", "test_search.py")
-    undecided: float = _of(0.4, "relative change", "from -1/2: neither closing nor opening", "test_search.py")
+    worth: float = _of(
+        0.1, "of that gain, of the product aimed at, of a pressure", "below which it is none: what changes or is left",
+        "test_search.py",
+    )  # fmt: skip
     steepest: float = _of(100.0, "coefficient of friction", "of surfaces that never slip", "test_friction.py")
     fade: float = _of(0.3, "of the last one", "softness or dilatancy once laws are met", "test_smooth_friction_runs.py")
     met: float = _of(

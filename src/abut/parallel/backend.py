@@ -61,8 +61,9 @@ class DistributedBodies:
 
     def assembled(self) -> DistributedBodies:
         """Have every process assemble its part."""
-        varying = bool(self.model.holds or self.model.springs or self.model.penetrations)  # a stiffness linearised anew
-        again = self.model.finite or varying  # iterations ask for it anew
+        model = self.model
+        varying = model.holds or model.springs or model.penetrations or model.physics  # a stiffness linearised anew
+        again = bool(model.finite or varying)  # iterations ask for it anew
         arguments = [(replace(self.cellwise, mesh=piece.mesh), again) for piece in self.pieces]
         self.team.each(part.assemble, per_rank=arguments)
         return self

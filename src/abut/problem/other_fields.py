@@ -51,10 +51,11 @@ def other_fields(model: Model, n_moving: int) -> OtherFields | None:
     SingularModelError for what is prescribed twice or nowhere."""
     if not model.physics:
         return None
-    if model.solve.linear not in ("auto", "direct"):
-        raise InputError(f'solve.linear: "{model.solve.linear}" knows displacements alone; physics needs "direct"')
     dofs = model.dofs
     first = dofs.range_of(DISPLACEMENT).stop
+    by_factors = ("auto", "direct") if dofs.size > first else ("auto", "direct", "petsc")
+    if model.solve.linear not in by_factors:
+        raise InputError(f'solve.linear: "{model.solve.linear}" knows displacements alone; physics needs "direct"')
     prescribed = np.zeros((dofs.size - first, len(model.histories)))
     held = np.zeros(len(prescribed), dtype=bool)
     for i, item in enumerate(model.physics):
