@@ -31,6 +31,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "loads": "pressures, tractions, forces and the like; each has a kind",
         "contacts": "pairs of surfaces that may touch, or are tied",
         "equations": "linear equations between displacements",
+        "sectors": "cyclic symmetry: one of alike sectors is modelled",
         "rigid": "bodies that move as a whole",
         "couplings": "points that move with a reference point, which carries forces and moments",
         "preloads": "bolts that are tightened: sections of bodies whose sides are drawn together",
@@ -319,6 +320,13 @@ MEANINGS: dict[str, dict[str, str]] = {
         "weak": "only there to keep loose parts in place: the certificate judges its force",
     },
     **PASSING,
+    "SectorTable": {
+        "side": "surface or node set: the side whose nodes move as their partners on the other one, turned by one sector",
+        "other": "the other side, meshed alike",
+        "sectors": "how many make up the whole turn, 2 or more",
+        "axis": "direction of the axis, of any length; left out: z; none in 2D",
+        "origin": "a point of the axis; left out: zero [length]",
+    },
     "StopTable": {
         "direction": "of the motion that is stopped, of any length; axisymmetric: along the axis",
         "distance": "from where the surface reaches farthest to the plane, 0 or more [length]",
