@@ -22,6 +22,7 @@ PAGE = DOCS / "verification" / "features.md"
 HEADER = ["table", "keys", "closed forms", "page", "picture", "`abut check`", "report"]
 APART = ("schema", "parameters", "mesh", "model", "materials", "solids", "solve", "output")  # what every job has
 MADE_OF = {
+    "sectors": ("ring-sector",),
     "fields": ("mapped-temperature", "submodel"),
     "stops": ("stop",),
     "start": ("start-plastic", "start-fit"),
@@ -54,6 +55,7 @@ WRONG = {  # one entry of each table that cannot be met
     "loads": '[[loads]]\nkind = "pressure"\non = "nowhere"\nvalue = 1\n',
     "contacts": '[[contacts]]\ncontactor = "nowhere"\ntarget = "block.top"\n',
     "equations": '[[equations]]\nterms = [{ on = "nowhere", component = "x", coefficient = 1 }]\n',
+    "sectors": '[[sectors]]\nside = "nowhere"\nother = "block.top"\nsectors = 3\n',
     "rigid": '[[rigid]]\nbody = "nowhere"\n',
     "rotations": '[[rotations]]\non = "nowhere"\nangle = 1\ncentre = [0, 0]\n',
     "couplings": '[[couplings]]\nname = "c"\non = "nowhere"\n',
@@ -146,7 +148,7 @@ def told(name: str) -> str:
 
 def in_report(name: str) -> str:
     """Title of the report's table of them, of the first closed form."""
-    stands = {"stops": "rigid", "fields": "", "start": "", "steps": ""}.get(name, name)
+    stands = {"stops": "rigid", "sectors": "equations", "fields": "", "start": "", "steps": ""}.get(name, name)
     of = closed_forms(name)
     if not stands or not of:
         return {"fields": "note", "start": "note", "steps": "what acts"}.get(name, "")

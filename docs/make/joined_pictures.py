@@ -282,7 +282,25 @@ def fields() -> None:
     saved(figure, "result-field")
 
 
-PICTURES = (fields, lever, probes, start, bolt, couplings, springs, stops, holds, modes)
+def sectors() -> None:
+    """The whole ring of ``abut verify ring-sector`` by its ninth, displacements five times as large."""
+    solution = abut.solve(BENCHMARKS["ring-sector"].model(0))
+    mesh, step = solution.model.mesh, solution.steps[-1]
+    cells = next(nodes[:, :4] for _, nodes, _ in mesh.cells_of("ring"))
+    figure, axes = plots().subplots(figsize=(4.2, 4.0), constrained_layout=True)
+    for k in range(9):
+        c, s = np.cos(2.0 * np.pi * k / 9.0), np.sin(2.0 * np.pi * k / 9.0)
+        points = (mesh.points + 5.0 * step.displacement) @ np.array([[c, s], [-s, c]])
+        face, edge = ("#f2d3d0", RED) if k == 0 else ("none", GREY)
+        axes.add_collection(PolyCollection(points[cells], facecolors=face, edgecolors=edge, linewidths=0.5))
+    axes.set_xlim(-2.2, 2.2)
+    axes.set_ylim(-2.2, 2.2)
+    axes.set_aspect("equal")
+    axes.axis("off")
+    saved(figure, "sectors")
+
+
+PICTURES = (sectors, fields, lever, probes, start, bolt, couplings, springs, stops, holds, modes)
 
 if __name__ == "__main__":
     for draw in PICTURES:

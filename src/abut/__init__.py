@@ -52,6 +52,7 @@ if TYPE_CHECKING:
         Term,
         Traction,
     )
+    from abut.model.sector import Sector, Sectors, add_sectors
     from abut.model.stop import Stop, Stopped, add_stops
     from abut.output.options import Output
     from abut.output.pyvista_export import plot, to_pyvista
@@ -82,6 +83,7 @@ _HOME = {  # of public names that do not come from abut.model
     "thicken": "abut.thin.thicken",
     **dict.fromkeys(("LoadFactor", "load_factors"), "abut.solution.load_factor"),
     **dict.fromkeys(("Stop", "Stopped", "add_stops"), "abut.model.stop"),
+    **dict.fromkeys(("Sector", "Sectors", "add_sectors"), "abut.model.sector"),
     **dict.fromkeys(("MidSurface", "mid_surface"), "abut.solution.mid_surface"),
     **dict.fromkeys(("BeamForces", "beam_forces"), "abut.solution.beam_forces"),
     **dict.fromkeys(("ResultField", "result_field"), "abut.probing.result_field"),
@@ -93,10 +95,10 @@ __all__ = [
     "Hencky", "Hold", "InputError", "Integration", "LinearElastic", "LoadFactor", "Mesh", "MidForce", "MidSupport",
     "MidSurface", "Model", "Moment", "MooneyRivlin", "NeoHooke", "NodalForce", "Ogden", "Orthotropic", "Output",
     "OverTemperature", "Penetration", "Plastic", "Preload", "Pressure", "PressureOverclosure", "Probe", "Removal",
-    "ResultField", "Rigid", "Rotation", "Shell", "SingularModelError", "Solid", "Solution", "SolveOptions", "Spring", "Stop",
-    "Stopped", "Support", "Temperature", "Term", "Thick", "Traction", "Yeoh", "add_stops", "add_surfaces", "beam_forces",
-    "check", "find_contacts", "from_meshio", "load_factors", "mid_surface", "plot", "result_field", "solve", "thicken",
-    "to_pyvista", "write", "write_report",
+    "ResultField", "Rigid", "Rotation", "Sector", "Sectors", "Shell", "SingularModelError", "Solid", "Solution",
+    "SolveOptions", "Spring", "Stop", "Stopped", "Support", "Temperature", "Term", "Thick", "Traction", "Yeoh",
+    "add_sectors", "add_stops", "add_surfaces", "beam_forces", "check", "find_contacts", "from_meshio", "load_factors",
+    "mid_surface", "plot", "result_field", "solve", "thicken", "to_pyvista", "write", "write_report",
 ]  # fmt: skip
 
 

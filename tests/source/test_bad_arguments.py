@@ -24,6 +24,7 @@ RESULTS = {
     "LoadFactor",
     "MidSurface",
     "ResultField",
+    "Sectors",
     "Solution",
     "Stopped",
     "Thick",
@@ -100,6 +101,10 @@ VALID: dict[str, tuple[dict[str, Any], Callable[[Any], object]]] = {  # argument
     "Buckling": ({"count": 1}, within("modes")),
     "SolveOptions": ({}, lambda solve: replace(MODEL, solve=solve)),
     "Spring": ({"name": "s", "on": "b.right", "x": 1.0}, within("springs")),
+    "Sector": (
+        {"side": "b.left", "other": "b.right", "sectors": 3}, lambda sector: abut.add_sectors(MESH, [sector]),
+    ),
+    "add_sectors": ({"mesh": MESH, "sectors": [abut.Sector("b.left", "b.right", 3)]}, kept),
     "Stop": ({"on": "b.right", "direction": (1.0, 0.0)}, lambda stop: abut.add_stops(MESH, [stop])),
     "Support": ({"on": "b.right", "x": 0.0}, within("supports")),
     "Temperature": ({"on": "b", "value": 1.0}, within("loads")),

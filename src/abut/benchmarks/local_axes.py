@@ -1,4 +1,4 @@
-"""Supports, loads and probes in local axes: a sector of a hollow ball, cut at any angle, and a shaft that is twisted."""
+"""Local axes and cyclic symmetry: a sector of a hollow ball, cut at any angle, a shaft and a ring that are twisted."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ import numpy as np
 from abut.axes import Axes
 from abut.benchmarks.record import Benchmark, Reference
 from abut.materials.elastic import LinearElastic
-from abut.mesh.make import box, cylinder, join
+from abut.mesh.make import box, cylinder, join, ring
 from abut.model import Model, Probe, Solid, Support, Traction
+from abut.model.sector import Sector, add_sectors
 from abut.solution import Solution
 from abut.types import Array
 
@@ -116,6 +117,31 @@ def _twist(solution: Solution) -> dict[str, float]:
     return {"twist of the end": float(turn.mean())}
 
 
+def _ring(level: int) -> Model:
+    """A ninth of a ring, held inside, twisted outside: no plane of symmetry, but every ninth does as the one before."""
+    n = 2**level
+    mesh = join({"ring": ring((INNER, OUTER), (20.0, 60.0), cells=(4 * n, 5 * n))})
+    joined = add_sectors(mesh, [Sector("ring.start", "ring.end", 9)])
+    return Model(
+        joined.mesh,
+        [Solid("ring", LinearElastic(YOUNG, POISSON))],
+        [Support("ring.inner", x=0, y=0)],
+        [Traction("ring.outer", (0.0, SHEAR), axes=Axes("cylindrical"))],
+        plane="strain",
+        equations=joined.equations,
+    )
+
+
+def _rim(solution: Solution) -> dict[str, float]:
+    """Around, and what any node of the rim is off that: tau = SHEAR b^2 / r^2, G = E / 2 (1 + nu)."""
+    mesh, step = solution.model.mesh, solution.steps[-1]
+    nodes = mesh.nodes_of("ring.outer")
+    local = np.einsum("nkd,nd->nk", Axes("cylindrical").frames(mesh.points[nodes]), step.displacement[nodes])
+    off = float(np.abs(local - (0.0, AROUND)).max())
+    return {"displacement around": float(local[:, 1].mean()), "differences on the rim": off}
+
+
+AROUND = SHEAR * OUTER**3 * (1.0 + POISSON) / YOUNG * (1.0 / INNER**2 - 1.0 / OUTER**2)
 CURVED = "quadratic cells, four through the wall"
 TWIST = SHEAR / RADIUS * LENGTH * 2.0 * (1.0 + POISSON) / YOUNG
 ROUND = "facets of second order on the round face"
@@ -133,5 +159,12 @@ BENCHMARKS = (
     Benchmark(
         "shaft-twist", "shaft twisted by tractions around its axis", _shaft, _twist,
         {"twist of the end": Reference(TWIST, 1e-3, "Coulomb's torsion of a round bar", ROUND)},
+    ),
+    Benchmark(
+        "ring-sector", "a ninth of a ring that is twisted, its sides joined by cyclic symmetry", _ring, _rim,
+        {
+            "displacement around": Reference(AROUND, 5e-4, "shear stress T / (2 pi r^2) of a ring under a torque", CURVED),
+            "differences on the rim": Reference(0.0, 5e-4 * AROUND, "every sector does what the one before does", CURVED),
+        },
     ),
 )  # fmt: skip

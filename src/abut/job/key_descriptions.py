@@ -4,6 +4,7 @@ A unit stands at the end in square brackets: force, length, mass, time and tempe
 
 from __future__ import annotations
 
+from abut.job.joining_keys import JOINING
 from abut.job.passing_keys import PASSING
 from abut.job.run_keys import RUN
 from abut.types import Json
@@ -31,6 +32,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "loads": "pressures, tractions, forces and the like; each has a kind",
         "contacts": "pairs of surfaces that may touch, or are tied",
         "equations": "linear equations between displacements",
+        "sectors": "cyclic symmetry: one of alike sectors is modelled",
         "rigid": "bodies that move as a whole",
         "couplings": "points that move with a reference point, which carries forces and moments",
         "preloads": "bolts that are tightened: sections of bodies whose sides are drawn together",
@@ -283,28 +285,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "rz": "the same about z (in 2D the only one); left out: free [radian]",
         "amplitudes": "of single components, { y = [...], rz = [...] }: pairs of time and factor; others follow amplitude",
     },
-    "CouplingTable": {
-        "name": "a name of your choice, for loads on it and its results",
-        "on": "name of the surface or node set whose points are coupled",
-        "kind": "kinematic: the points follow the reference as a rigid body; distributing: the reference has their mean "
-        "motion, and its force and moment are spread over them, which stiffens nothing",
-        "reference": "point that translations, forces and moments refer to; left out: the mean of the points [length]",
-        "follow": "kinematic: displacements in which the points follow; left out: all. In some only, kinematics finite "
-        "needs rotations that are prescribed as 0",
-        "weights": "distributing on a node set: weight of each point, in the order of their numbers; left out: all the "
-        "same. On a surface the area counts",
-        "radius": "points farther than this from the reference, undeformed, are left out; left out: all take part [length]",
-        "axes": "local axes at each undeformed point, whose first, second and third direction x, y and z of follow are",
-        "mirrors": "distributing, of half and quarter models: normals of the planes of symmetry, which the reference lies "
-        "on; loads at it are those on the modelled part",
-        "x": "translation of the reference point along x; left out: free [length]",
-        "y": "translation of the reference point along y; left out: free [length]",
-        "z": "translation of the reference point along z; left out: free [length]",
-        "rx": "rotation about x; left out: free [radian]",
-        "ry": "rotation about y; left out: free [radian]",
-        "rz": "rotation about z (in 2D the only one); left out: free [radian]",
-        "amplitudes": "of single components, { y = [...], rz = [...] }: pairs of time and factor; others follow amplitude",
-    },
+    **JOINING,
     "SpringTable": {
         "on": "name of the surface or node set",
         "to": "node set at the other end, of as many nodes; left out: the ground",

@@ -51,6 +51,7 @@ from abut.model import (
     Term,
 )
 from abut.model.conditions import TURNS
+from abut.model.sector import Sector, add_sectors
 from abut.model.stop import Stop, add_stops
 from abut.output.options import Output
 from abut.types import Json
@@ -173,8 +174,9 @@ def _model(file: JobFile, folder: Path, refine: int, named: Named) -> tuple[Mode
     resolved = resolve_contacts(file.contacts, thin.thick.mesh, solids, file.model.kinematics == "finite")
     stops = [Stop(**values(s, f"stops[{i}]")) for i, s in enumerate(file.stops)]
     stopped = add_stops(resolved.mesh, stops, file.model.plane)
+    sectors = add_sectors(stopped.mesh, [Sector(**values(s, f"sectors[{i}]")) for i, s in enumerate(file.sectors)])
     model = Model(
-        mesh=stopped.mesh,
+        mesh=sectors.mesh,
         plane=file.model.plane,
         kinematics=file.model.kinematics,
         solids=solids,
@@ -194,6 +196,7 @@ def _model(file: JobFile, folder: Path, refine: int, named: Named) -> tuple[Mode
         solve=SolveOptions(**file.solve.model_dump()),
         equations=[
             *(_equation(equation, f"equations[{i}]") for i, equation in enumerate(file.equations)),
+            *sectors.equations,
             *thin.thick.equations,
         ],
         rigid=[*(Rigid(**values(r, f"rigid[{i}]")) for i, r in enumerate(file.rigid)), *stopped.rigid],

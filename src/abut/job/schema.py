@@ -20,6 +20,7 @@ from abut.model.coupling import Coupling
 from abut.model.hold import STAY
 from abut.model.kinematics import KINEMATICS
 from abut.model.probe import QUANTITIES
+from abut.model.sector import Sector
 from abut.model.step_choice import WORDS as STEPS
 from abut.model.stop import Stop
 from abut.thin.records import Beam, Shell
@@ -170,6 +171,7 @@ HOLD = table_of(
     {**dict.fromkeys("xyz", Led), "since": Time, **dict.fromkeys(("reached", "until", "released"), Time | None)},
     "a support that comes or goes on the way",
 )
+SECTOR = table_of(Sector, meaning="one of alike sectors around an axis is modelled, whose sides equations join")
 STOP = table_of(Stop, meaning="a rigid plane that a surface runs against")
 REMOVAL = table_of(
     Removal,
@@ -242,6 +244,7 @@ class JobFile(Table):
     loads: list[Annotated[Table, LOAD]] = []
     contacts: list[ContactTable] = []
     equations: list[EquationTable] = []
+    sectors: list[Annotated[Table, Of(SECTOR)]] = []
     rigid: list[RigidTable] = []
     rotations: list[Annotated[Table, Of(ROTATION)]] = []
     couplings: list[CouplingTable] = []
