@@ -88,11 +88,11 @@ def resistance_of_rows(rigid: RigidModes, rows: Sparse) -> NDArray[np.float64]:
     return np.asarray(motion.T @ motion) / rows.shape[0]
 
 
-def free_motions(grams: Sequence[NDArray[np.float64]], least: float = FREE) -> NDArray[np.float64]:
+def free_motions(grams: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
     """Null vectors (n_modes, n_free) of the sum of all resistances."""
     total = sum(grams)
     values, vectors = np.linalg.eigh(total)
-    return np.asarray(vectors[:, values < least * max(values.max(initial=0.0), 1e-300)])
+    return np.asarray(vectors[:, values < FREE * max(values.max(initial=0.0), 1e-300)])
 
 
 def simple_motions(rigid: RigidModes, motion: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -169,8 +169,7 @@ def following_status(system: Linearised, state: State, increment: Increment, ask
 
 def without_pulling(system: Linearised, state: State, there: State, increment: Increment) -> State | None:
     """The state (its unknowns as they are) without the points that pull at ``there``, where contact alone holds a body: what
-    they pull others press, far from the forces that loads ask for. Without it ``test_pin_on_one_node`` and
-    ``test_pin_that_falls`` fail (96 iterations instead of fewer than 50).
+    they pull others press, far from the forces that loads ask for. Without it ``test_pin_on_one_node`` fails.
 
     Where all of a contact pulls, what sticks slips: a point that meets the other side on the way sticks to where bodies that
     come straight together would meet, theory (G20), and if they come round an axle the traction that this takes may be any.

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from abut.bodies.rigid_modes import RigidModes, free_motions, resistance_of_rows, rigid_modes
 from abut.nonlinear.settings import Settings
-from abut.problem.balance import Balance
 from abut.problem.linearised import Linearised
 from abut.problem.pair import Pair
 from abut.problem.problem import ContactProblem
@@ -23,7 +22,7 @@ def sticking(problem: ContactProblem, system: Linearised, state: State, thrown: 
     """The state for an iteration that would end at ``thrown``: where that throws a body which slips all over, all of it
     sticks, which tells the tractions that it takes; else as it is.
     near: facets by which an iteration may move bodies along motions that nothing resists. Without it
-    ``test_a_wheel_rolls`` and ``test_a_roller_goes_half_as_far_as_the_plate_that_rolls_it`` fail."""
+    ``test_a_wheel_rolls`` fails."""
     if system.restraint.by_supports or not _all_slips(system, state):
         return state
     rigid, supports = _now(problem, _at(system), system.factors)
@@ -57,36 +56,6 @@ def resisting(problem: ContactProblem, system: Linearised, state: State, setting
     resistance = max(float(forces.max()) / (settings.holding.near * _facet(problem)), least)
     more = resistance * sp.identity(system.stiffness.shape[0], format="csr")
     return replace(system, stiffness=system.stiffness + more)
-
-
-def loosely_held(problem: ContactProblem, balance: Balance, state: State, weak: float) -> bool:
-    """Whether supports, ties, closed gaps and what sticks hardly resist some rigid motion:
-    by less than ``weak`` of the strongest: a ball on one node may spin."""
-    if problem.restraint.by_supports:
-        return False
-    rigid, supports = _now(problem, state.unknowns, balance.factors)
-    return bool(free_motions([supports, *_closed(balance, rigid, state)], weak).shape[1])
-
-
-def not_adrift(problem: ContactProblem, system: Linearised, state: State, there: State, near: float) -> State:
-    """The end of an iteration, without what carries a body far along motions that nothing resists while it touches nothing:
-    its linear system knows nothing of them. A nearly singular system may carry a body so far that rounding of it is more
-    than a facet: three rounds. Without it ``test_a_pin_that_rocks_within_the_tolerance_passes`` fails."""
-    way = problem.displacement(there) - problem.displacement(state)
-    if system.restraint.by_supports or np.abs(way).max() <= near * _facet(problem):
-        return there
-    rigid, supports = _now(problem, _at(system), system.factors)
-    rows = sum(_closed(system, rigid, state), np.zeros_like(supports))
-    touched = np.repeat(rows.diagonal().reshape(-1, rigid.per_group).any(axis=1), rigid.per_group)
-    axes = free_motions([supports, rows, np.diag(touched.astype(float))])
-    assert system.about is not None
-    free = problem.constraints.near(system.about.at, system.factors)
-    for _ in range(3):
-        drift = _along(rigid, axes, problem.displacement(there) - problem.displacement(state))
-        if np.abs(drift).max() <= near * _facet(problem):
-            break
-        there = replace(there, unknowns=there.unknowns - free.coordinates(drift))
-    return there
 
 
 def _along(rigid: RigidModes, axes: NDArray[np.float64], way: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -137,7 +106,7 @@ def _free(system: Linearised, rigid: RigidModes, supports: NDArray[np.float64], 
     return free_motions([supports, *_closed(system, rigid, state)])
 
 
-def _closed(system: Linearised | Balance, rigid: RigidModes, state: State) -> list[NDArray[np.float64]]:
+def _closed(system: Linearised, rigid: RigidModes, state: State) -> list[NDArray[np.float64]]:
     """Resistance of ties, closed gaps and what sticks, by pair."""
     grams = []
     for pair, closed, slips in zip(system.pairs, system.split(state.closed), system.split(state.slipping)):

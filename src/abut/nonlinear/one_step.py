@@ -13,7 +13,6 @@ import numpy as np
 from abut.linear.solver import LinearSolver
 from abut.nonlinear.attempt import UNSTEADY, Attempt
 from abut.nonlinear.drag import Drag, scale
-from abut.nonlinear.holding import loosely_held
 from abut.nonlinear.hourglass import folds_at_once
 from abut.nonlinear.iteration import Found, Increment
 from abut.nonlinear.pace import Pace
@@ -179,14 +178,8 @@ def stabilised(setting: Setting, before: State, time: float) -> Led:
             break
         left = float(np.abs(force).max(initial=0.0)) / here.largest.force
         most = max(most, left)
-        assert part.balance is not None
-        loose = loosely_held(problem, part.balance, here, asked.slight)
-        if loose and left <= settings.newton.balanced:
-            return Led((*parts[:-1], replace(parts[-1], whole=True)))
         least = strength.share <= settings.newton.balanced
-        if (
-            not loose and left < asked.slight and (left < 10.0 * asked.slight * most or least)
-        ):  # at the outset bodies are slow, too
+        if left < asked.slight and (left < 10.0 * asked.slight * most or least):  # at the outset bodies are slow, too
             last = setting.attempted(here, here, time)
             spent += last.iterations
             if last.converged:

@@ -19,7 +19,7 @@ Vector = NDArray[np.float64]
 
 def circling(errors: Sequence[float], settings: Settings) -> bool:
     """Whether iterations come back to where they were two or three before, which has shown once all around.
-    Without it ``test_a_flattened_tube_touches_itself_inside`` (hex8) fails."""
+    A line search goes on from there: without it ``examples/pipe-clip`` takes 105 iterations, with it 99."""
     for period in range(2, settings.newton.patience + 1):
         before, last = np.array(errors[-2 * period : -period]), np.array(errors[-period:])
         if len(before) == period and (np.abs(last - before) <= settings.interior.met * before).all():

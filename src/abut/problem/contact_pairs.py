@@ -134,22 +134,27 @@ def pair(
     )  # fmt: skip
     if not contact.frictional:
         return own_pair
-    assert coupling.points is not None
     assert normals is not None
-    slim = replace(own_pair, coupling=replace(coupling, points=None))
-    return _with_friction(model, slim, slip_operators(coupling.points, contactor.points), normals, constraints)
+    return with_friction(model, own_pair, normals, constraints)
 
 
-def _with_friction(
+def with_friction(model: Model, normal_pair: Pair, normals: Array, constraints: Constraints) -> Pair:
+    """A pair that has pressures alone, with the multipliers of friction beside them. Its integration points go."""
+    coupling = normal_pair.coupling
+    assert coupling.points is not None
+    slim = replace(normal_pair, coupling=replace(coupling, points=None))
+    return _with_tractions(
+        model, slim, slip_operators(coupling.points, normal_pair.contactor.points), normals, constraints
+    )
+
+
+def _with_tractions(
     model: Model, normal_pair: Pair, operators: SlipOperators, normals: Array, constraints: Constraints
 ) -> Pair:
-    """A pair that has pressures alone, with the multipliers of friction beside them."""
-    sides = FrictionSides(
-        normal_pair.contactor,
-        normal_pair.target,
-        normals,
-        reach_of(constraints, normal_pair.contactor, normal_pair.target),
-    )
+    """The same with slips by ``operators``."""
+    contactor, target = normal_pair.contactor, normal_pair.target
+    reach, move = reach_of(constraints, contactor, target), normal_pair.moving is not None
+    sides = FrictionSides(contactor, target, normals, reach, move)
     made = friction_rows(sides, normal_pair.space, normal_pair.rows, operators, constraints)
     more = made.rows.shape[0] - len(normal_pair.space)
     prescribed = np.vstack([normal_pair.prescribed, (made.rows @ constraints.prescribed)[len(normal_pair.space) :]])
@@ -242,9 +247,9 @@ def _in_space(model: Model, earlier: Pair, space: PressureSpace, constraints: Co
         gap=space.transfer.T @ earlier.coupling.gap + constant * space.weight, scale=space.weight / earlier.stiffness,
         carried=held(space, earlier.contactor, constraints),
     )  # fmt: skip
-    if earlier.slip is None or earlier.slip.at_facets is None:
+    if earlier.slip is None:
         return changed
-    return _with_friction(model, changed, earlier.slip.operators, earlier.slip.at_facets, constraints)
+    return _with_tractions(model, changed, earlier.slip.operators, earlier.slip.at_facets, constraints)
 
 
 def _points(

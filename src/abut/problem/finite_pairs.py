@@ -5,25 +5,20 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import scipy.sparse as sp
 
 from abut.contact.coupling import CouplingOptions, couple
-from abut.contact.function_places import places
 from abut.contact.geometry import facet_products, facet_sizes, full_moments, nodal_normals
-from abut.contact.pressure_space import DUAL, DUAL_P1, only, pressure_space, resolve
-from abut.contact.tangential import frames, slip_operators
+from abut.contact.pressure_space import DUAL, DUAL_P1, pressure_space, resolve
 from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.model import Contact, Model
-from abut.model.friction import friction_values
 from abut.model.symmetry import held_directions
 from abut.problem.constraints import Constraints
 from abut.problem.contact_normals import moving_smoothing
-from abut.problem.contact_pairs import pair, reach_of
+from abut.problem.contact_pairs import pair, reach_of, with_friction
 from abut.problem.dual_functions import Mixture
 from abut.problem.held_multipliers import held, without_held
-from abut.problem.pair import Moving, Pair, Slip
-from abut.problem.relative_motion import passing
+from abut.problem.pair import Moving, Pair
 from abut.problem.scales import scales
 
 
@@ -69,7 +64,9 @@ def finite_pair(model: Model, contact: Contact, constraints: Constraints) -> Pai
         index=np.arange(n)[:, None], components=(space,), compliance=both.compliance,
         carried=held(space, contactor, constraints), moving=moving,
     )  # fmt: skip
-    return made if not contact.frictional else _with_tangents(model, made, constraints)
+    if not contact.frictional:
+        return made
+    return with_friction(model, made, nodal_normals(contactor, moving.contactor), constraints)
 
 
 def moving_normals(model: Model, contactor: Surface, target: Surface) -> Moving:
@@ -80,36 +77,3 @@ def moving_normals(model: Model, contactor: Surface, target: Surface) -> Moving:
     except InputError:
         other = None
     return Moving(moving_smoothing(contactor, planes), other)
-
-
-def _with_tangents(model: Model, whole: Pair, constraints: Constraints) -> Pair:
-    """The same with tractions beside the pressures, where supports let either side move along them."""
-    dim, n, space = whole.contactor.dim, len(whole.space), whole.space
-    at = whole.coupling.points
-    assert at is not None
-    assert whole.moving is not None
-    points, outward = places(whole.contactor, space, nodal_normals(whole.contactor, whole.moving.contactor))
-    reach = reach_of(constraints, whole.contactor, whole.target)
-    past = passing(whole.contactor, whole.target, space.node, -outward, reach, constraints)
-    tangents, free = frames(-outward, past.moves)
-    operators = slip_operators(at, whole.contactor.points)
-    fields = [(space.transfer.T @ along).tocsr() for along in operators.along]
-    index, first = np.full((n, dim), -1), n
-    index[:, 0] = np.arange(n)
-    components, rows, carried = [space], [whole.rows], [held(space, whole.contactor, constraints)]
-    for b in range(dim - 1):
-        keep = free[:, b]
-        components.append(only(space, keep))
-        carried.append(past.carried(tangents[:, b])[keep])
-        parts = fields if dim == 2 else [sp.diags(tangents[:, b, a]) @ fields[a] for a in range(dim)]
-        rows.append(sum(parts[1:], parts[0]).tocsr()[keep])
-        index[keep, 1 + b] = first + np.arange(int(keep.sum()))
-        first += int(keep.sum())
-    weight = np.concatenate([part.weight for part in components])
-    every = sp.vstack(rows).tocsr()
-    return replace(
-        whole, gap=np.concatenate([whole.gap, np.zeros(first - n)]), scale=weight / whole.stiffness, index=index, rows=every,
-        operator=(every @ constraints.free).tocsr(), prescribed=every @ constraints.prescribed, components=tuple(components),
-        coupling=replace(whole.coupling, points=None), slip=Slip(operators, tangents, points, -outward),
-        values=friction_values(model, whole.contact, points), carried=np.concatenate(carried),
-    )  # fmt: skip

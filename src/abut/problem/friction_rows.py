@@ -22,12 +22,13 @@ from abut.types import Sparse
 @dataclass(frozen=True)
 class Sides:
     """Contactor and target within ``reach`` of each other, and the normals of the contactor for friction, (n_facets, 9,
-    dim)."""
+    dim). move: rows are looked at where bodies are, so that what nothing moves at the outset may be moved later."""
 
     contactor: Surface
     target: Surface
     at_facets: NDArray[np.float64]
     reach: float
+    move: bool = False
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,7 @@ def friction_rows(
     for b in range(dim - 1):
         parts = fields if dim == 2 else [sp.diags(tangents[:, b, a]) @ fields[a] for a in range(dim)]
         part = sum(parts[1:], parts[0]).tocsr()
-        keep = free[:, b] & _seen(part, space.weight, constraints)
+        keep = free[:, b] if pair.move else free[:, b] & _seen(part, space.weight, constraints)
         rows.append(part[keep])
         components.append(only(space, keep))
         carried.append(past.carried(tangents[:, b])[keep])

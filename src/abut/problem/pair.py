@@ -45,14 +45,14 @@ class PairPoints:
 class Slip:
     """What makes tangential rows. operators: by facets; tangents: (n_functions, dim - 1, dim), normals: (n_functions, dim)
     from target to contactor, unit, at the place of each function of the pressure, ``points`` (n_functions, dim);
-    at_facets: (n_facets, 9, dim) normals of the contactor, None for large sliding; area: (n_functions,) by which weighted
-    slips are divided, None for int H_k as it is."""
+    at_facets: (n_facets, 9, dim) normals of the contactor; area: (n_functions,) by which weighted slips are divided, None
+    for int H_k as it is."""
 
     operators: SlipOperators
     tangents: NDArray[np.float64]
     points: NDArray[np.float64]
     normals: NDArray[np.float64]
-    at_facets: NDArray[np.float64] | None = None
+    at_facets: NDArray[np.float64]
     area: NDArray[np.float64] | None = None
 
 
