@@ -13,6 +13,7 @@ from abut.model import Model
 from abut.model.conditions import weights
 from abut.model.rates import integration_of
 from abut.problem.adjusted_gaps import taken_off
+from abut.problem.all_restraint import all_restraint
 from abut.problem.backend import Backend
 from abut.problem.body_terms import Bodies, DeadLoads, LinearBodies, SolidBodies
 from abut.problem.changing_bodies import ChangingBodies
@@ -26,6 +27,7 @@ from abut.problem.follower_loads import FollowerLoads
 from abut.problem.free_modes import floats_of, free_mode_springs
 from abut.problem.held_motions import HeldMotions, neutral_in
 from abut.problem.holds import Holds
+from abut.problem.idle_loads import idle_loads
 from abut.problem.kinematics import Kinematics
 from abut.problem.loads import Loads, followers, loads
 from abut.problem.other_fields import other_fields
@@ -33,7 +35,7 @@ from abut.problem.pair import Pair
 from abut.problem.penetrations import Penetrations
 from abut.problem.preloads import LockedPreloads
 from abut.problem.problem import ContactProblem
-from abut.problem.restraint import require_balance, require_unmoved, restraint
+from abut.problem.restraint import require_balance, require_unmoved
 from abut.problem.springs import Springs
 from abut.problem.terms import Term
 from abut.problem.turning_ties import CurrentTie, turning_tie
@@ -72,11 +74,11 @@ def assemble(
     observe(Phase("cutting and integrating the interface"))
     every = finite_pairs(model, constraints) if model.finite else pairs(model, constraints, backend.couple)
     _describe(every, note)
+    for idle in idle_loads(model):
+        note(f"{idle.where}: {idle.what}, and does nothing there; {idle.cure}")
     clock.mark("interface")
     observe(Phase("checking for unconstrained rigid-body motions"))
-    restrained, passing = restraint(model.mesh, constraints, every), Holds.of(model)
-    for helps in (sprung, passing):
-        restrained = restrained if helps is None else restrained.helped_by(helps.resistance(restrained.rigid.modes))
+    restrained, passing = all_restraint(model, constraints, every), Holds.of(model)
     ends = loaded.at_ends(model)
     neutral, settled = neutral_in(model, restrained, ends)
     rigid, resisted = restrained.rigid, restrained.everything
