@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.contact.coupling import surface_degree
+from abut.diagnosis.all_restraint import all_restraint
 from abut.materials.material import linear
 from abut.model import LAWS, METHODS, SolveOptions
-from abut.problem.all_restraint import all_restraint
 from abut.problem.constraints import supports
 from abut.solution import ContactResult, Solution, Step
 

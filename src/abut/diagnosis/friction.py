@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from abut.diagnosis.all_restraint import all_restraint
 from abut.diagnosis.finding import Finding
 from abut.diagnosis.uniqueness import uniqueness
 from abut.errors import AbutError
 from abut.model import Model
 from abut.model.conditions import weights
 from abut.model.friction import FrictionValues
-from abut.problem.all_restraint import all_restraint
 from abut.problem.constraints import Constraints
 from abut.problem.loads import loads
 from abut.problem.pair import Pair

@@ -9,11 +9,11 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.bodies.rigid_modes import each_motion, free_motions
+from abut.diagnosis.all_restraint import all_restraint
 from abut.diagnosis.finding import Finding, Motion, from_error
 from abut.errors import SingularModelError
 from abut.model import Model
 from abut.model.conditions import weights
-from abut.problem.all_restraint import all_restraint
 from abut.problem.constraints import Constraints
 from abut.problem.free_modes import floats_of, free_mode_springs
 from abut.problem.held_motions import neutral_in

@@ -13,7 +13,6 @@ from abut.model import Model
 from abut.model.conditions import weights
 from abut.model.rates import integration_of
 from abut.problem.adjusted_gaps import taken_off
-from abut.problem.all_restraint import all_restraint
 from abut.problem.backend import Backend
 from abut.problem.body_terms import Bodies, DeadLoads, LinearBodies, SolidBodies
 from abut.problem.changing_bodies import ChangingBodies
@@ -35,7 +34,7 @@ from abut.problem.pair import Pair
 from abut.problem.penetrations import Penetrations
 from abut.problem.preloads import LockedPreloads
 from abut.problem.problem import ContactProblem
-from abut.problem.restraint import require_balance, require_unmoved
+from abut.problem.restraint import helped, require_balance, require_unmoved, restraint
 from abut.problem.springs import Springs
 from abut.problem.terms import Term
 from abut.problem.turning_ties import CurrentTie, turning_tie
@@ -78,7 +77,8 @@ def assemble(
         note(f"{idle.where}: {idle.what}, and does nothing there; {idle.cure}")
     clock.mark("interface")
     observe(Phase("checking for unconstrained rigid-body motions"))
-    restrained, passing = all_restraint(model, constraints, every), Holds.of(model)
+    passing = Holds.of(model)
+    restrained = helped(restraint(model.mesh, constraints, every), (sprung, passing))
     ends = loaded.at_ends(model)
     neutral, settled = neutral_in(model, restrained, ends)
     rigid, resisted = restrained.rigid, restrained.everything
