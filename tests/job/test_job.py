@@ -25,8 +25,6 @@ def run(tmp_path: Path, text: str, capsys: pytest.CaptureFixture[str], *options:
     return status, capsys.readouterr().err
 
 
-STEP = '[[steps]]\nname = "pull"\n'
-
 # fmt: off
 BAD = {
     "unknown key": ("target = ", "tagret = ", "contacts[0].tagret: unknown key; did you mean 'target'?"),
@@ -43,8 +41,6 @@ BAD = {
     "a truth value for a number": ("young = 210e3", "young = true", "materials.steel.young: expected a number, got True"),
     "a key called like a load": ('[[contacts]]', '[[contacts]]\npressure = "P3"', "contacts[0].pressure: expected 'auto'"),
     "a list for a table": ('[[contacts]]', '[[contacts]]\nlaw = [[0, 1]]', "law: expected a table, law = { ... } with its"),
-    "two steps of one name": ("[[contacts]]", f"{STEP}{STEP}[[contacts]]", "steps[1].name: 'pull' is used twice; give each"),
-    "a step called start": ("[[contacts]]", f"{STEP.replace('pull', 'start')}[[contacts]]", "'start' stands for"),
     "version": ("schema = 1", "schema = 2", "expected 1, got 2"),
     "syntax": ("[[contacts]]", "[[contacts]", "not valid TOML"),
     "generator": ('kind = "box"', 'kind = "bix"', "did you mean 'box'?"),
