@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from abut.analysis.edge_load import edge_load
 from abut.analysis.faceting import faceting
 from abut.analysis.oscillation import CLOSED, WHOLE, oscillation
+from abut.analysis.overlap import meant
 from abut.analysis.peaks import Peaks, peaks_of
 from abut.analysis.pressure_error import pressure_error
 from abut.analysis.resolution import resolution
@@ -137,9 +138,10 @@ class _Case:
         matters = max(largest, LESSER * around.beside)
         areas = full_moments(pair.contactor, 0)[:, 0]
         pressed_in = max(pair.compliance * matters / np.pi, FLAT)
-        hidden = (np.zeros(len(areas)) if around.overlap is None else around.overlap) / np.maximum(
-            pressed_in, SHARE * (around.bends or 0.0) / facet_sizes(pair.contactor)
-        )
+        sizes = facet_sizes(pair.contactor)
+        overlap = np.zeros(len(areas)) if around.overlap is None else around.overlap
+        beyond = np.maximum(overlap - meant(pair, largest) / sizes, 0.0)
+        hidden = beyond / np.maximum(pressed_in, SHARE * (around.bends or 0.0) / sizes)
         loaded = np.nanmax(np.abs(nodal) if pair.contact.kind == KINDS[2] else nodal, axis=1) > CLOSED * largest
         cover = pair.coupling.covered / areas
         pressing = pressed_in * np.pi / pair.compliance if pair.compliance > 0.0 else 0.0
@@ -161,8 +163,12 @@ def _balanced(case: _Case, errors: tuple[float, float]) -> Iterator[Check]:
 def _gaps(case: _Case, penetration: float) -> Iterator[Check]:
     """How far the sides are in each other, and how far facets stand off what they stand for."""
     pair, free = case.pair, case.around.free
+    deeper = max(penetration - meant(pair, case.largest), 0.0)
     yield case.check(
-        "penetration", penetration / pair.size, PENETRATION, "largest weighted penetration over the facet size"
+        "penetration",
+        deeper / pair.size,
+        PENETRATION,
+        "largest weighted penetration over the facet size, beyond the law's",
     )
     yield case.check("overlap", case.hidden.max(initial=0.0), OVERLAP,
         "largest penetration at a point, over what the largest pressure indents between nodes, or a thin part gives way",

@@ -11,7 +11,7 @@ from abut.model import Buckling, Frequencies, Model
 from abut.modes.buckling import buckling
 from abut.modes.complex_frequencies import complex_frequencies
 from abut.modes.cyclic import cyclic_frequencies, sides
-from abut.modes.frequencies import frequencies
+from abut.modes.frequencies import densities, frequencies
 from abut.modes.held import Held, held
 from abut.modes.sliding import sliding
 from abut.modes.spinning import spin_softening
@@ -34,6 +34,8 @@ def check_modes(model: Model, team: bool) -> None:
             raise InputError(
                 f"frequencies: side: no node set named '{wanted.side}'{nearest(wanted.side, model.mesh.node_sets)}"
             )
+        if isinstance(wanted, Frequencies):
+            densities(model)
     if model.physics:
         raise InputError("modes: frequencies and buckling loads are those of displacements alone; leave physics out")
     if model.finite and any(isinstance(wanted, Buckling) for wanted in model.modes):

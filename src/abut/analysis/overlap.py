@@ -11,6 +11,7 @@ from abut.analysis.faceting import misfit, unseen
 from abut.analysis.oscillation import CLOSED
 from abut.cells import MAX_FACET_NODES
 from abut.contact.geometry import facet_sizes, full_moments
+from abut.contact.overclosure import PressureOverclosure
 from abut.problem.pair import Pair
 from abut.problem.sample_gaps import gaps_at
 
@@ -35,6 +36,12 @@ def overlaps(pair: Pair, displacement: NDArray[np.float64], offset: float) -> ND
         depth = np.minimum(depth, depth - unseen(pair, chords))
     np.maximum.at(deepest, at.facet, depth / facet_sizes(pair.contactor)[at.facet])
     return deepest
+
+
+def meant(pair: Pair, pressure: float) -> float:
+    """How far surfaces overlap under a pressure because their law says so, a length: not at all, but for soft contact."""
+    law = pair.contact.law
+    return law.overclosure(pressure) if isinstance(law, PressureOverclosure) and pressure > 0.0 else 0.0
 
 
 def covered_elsewhere(pairs: Sequence[Pair], pressures: Sequence[NDArray[np.float64]]) -> list[NDArray[np.float64]]:

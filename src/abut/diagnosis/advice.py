@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.contact.coupling import surface_degree
+from abut.diagnosis.all_restraint import all_restraint
 from abut.materials.material import linear
 from abut.model import LAWS, METHODS, SolveOptions
 from abut.problem.constraints import supports
-from abut.problem.restraint import restraint
 from abut.solution import ContactResult, Solution, Step
 
 COUNT = 3
@@ -142,7 +142,7 @@ def _by_sliding(solution: Solution) -> Iterator[Remedy]:
     rubbing = [c for c in solution.steps[-1].contacts if c.friction is not None and c.name not in selves]
     if not (rubbing and model.loads) or _hurried(solution):
         return
-    free = np.abs(restraint(model.mesh, supports(model), []).free).max(axis=1, initial=0.0)
+    free = np.abs(all_restraint(model, supports(model), []).free).max(axis=1, initial=0.0)
     loose = free.reshape(-1, model.dim).max(axis=1) > LOOSE
     names = [c.name for c in rubbing if loose[c.contactor.node_ids].any() or loose[c.target.node_ids].any()]
     action = "a support, a prescribed displacement in place of the load, or more friction or pressure"

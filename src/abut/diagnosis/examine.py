@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from abut import checks
+from abut.analysis.modes import check_modes
 from abut.diagnosis.constraints import constraints
 from abut.diagnosis.contactor import sides
 from abut.diagnosis.cost import cost
@@ -25,6 +27,7 @@ from abut.problem.constraints import Constraints, supports
 from abut.problem.contact_pairs import pair
 from abut.problem.finite_pairs import finite_pair
 from abut.problem.pair import Pair
+from abut.problem.penetrations import Penetrations
 
 
 def check(model: Model) -> Report:
@@ -62,11 +65,27 @@ def check(model: Model) -> Report:
     except InputError as error:  # loads that cannot be evaluated
         findings.append(from_error(error, "loads"))
     findings += friction(model, supported, built)
+    findings += _refused(model, built)
     if len(built) == len(model.contacts):
         findings += cost(model, supported, built)
     if not any(MIXED in f.what for f in findings):  # one mistake, said once
         findings += doubts
     return Report(in_order(findings), tuple(shown))
+
+
+def _refused(model: Model, built: Sequence[Pair]) -> list[Finding]:
+    """What else a run would refuse: modes that cannot be found, fluids that come from nowhere."""
+    found = []
+    try:
+        check_modes(model, team=False)
+    except InputError as error:
+        found.append(from_error(error, "modes"))
+    try:
+        if len(built) == len(model.contacts):
+            Penetrations.of(model, built)
+    except InputError as error:
+        found.append(from_error(error, "penetrations"))
+    return found
 
 
 def _built(model: Model, contact: Contact, supported: Constraints) -> Pair:

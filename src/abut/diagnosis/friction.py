@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from abut.diagnosis.all_restraint import all_restraint
 from abut.diagnosis.finding import Finding
 from abut.diagnosis.uniqueness import uniqueness
 from abut.errors import AbutError
@@ -16,7 +17,7 @@ from abut.model.friction import FrictionValues
 from abut.problem.constraints import Constraints
 from abut.problem.loads import loads
 from abut.problem.pair import Pair
-from abut.problem.restraint import Restraint, restraint
+from abut.problem.restraint import Restraint
 
 HALVINGS = 10  # of the range in which a coefficient is looked for: to a thousandth
 LARGEST = 1e3  # coefficient that is as good as any
@@ -51,9 +52,9 @@ def _alone(model: Model, constraints: Constraints, pairs: Sequence[Pair]) -> lis
         return []
     for number, (load, time) in enumerate(zip(ends, model.ends), start=1):
         at, force = weights(model.histories, time), constraints.free.T @ load
-        motion = restraint(model.mesh, constraints, [_with(pair, at, 0.0) for pair in pairs]).unbalanced(force)
+        motion = all_restraint(model, constraints, [_with(pair, at, 0.0) for pair in pairs]).unbalanced(force)
         given = _given(pairs, at)
-        needed = _needed(restraint(model.mesh, constraints, pairs), at, force) if motion and given > 0.0 else None
+        needed = _needed(all_restraint(model, constraints, pairs), at, force) if motion and given > 0.0 else None
         if needed is not None and (worst is None or needed / given > worst[0]):
             when = f" in step {number}" if len(ends) > 1 else ""
             least = f"it takes a coefficient of {needed:.3g} at least, {_words(pairs, at)}"

@@ -9,6 +9,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.bodies.rigid_modes import each_motion, free_motions
+from abut.diagnosis.all_restraint import all_restraint
 from abut.diagnosis.finding import Finding, Motion, from_error
 from abut.errors import SingularModelError
 from abut.model import Model
@@ -18,14 +19,14 @@ from abut.problem.free_modes import floats_of, free_mode_springs
 from abut.problem.held_motions import neutral_in
 from abut.problem.loads import loads
 from abut.problem.pair import Pair
-from abut.problem.restraint import Restraint, require_held, restraint
+from abut.problem.restraint import Restraint, require_held
 
 SHOWN = 0.1  # size of a motion over that of its body, for the eye
 
 
 def motions(model: Model, constraints: Constraints, pairs: Sequence[Pair]) -> tuple[list[Finding], list[Motion]]:
     """Findings, and each motion that supports leave free with its displacement. ``pairs``: all that could be built."""
-    restrained = restraint(model.mesh, constraints, pairs)
+    restrained = all_restraint(model, constraints, pairs)
     findings: list[Finding] = []
     complete = len(pairs) == len(model.contacts)
     every = free_motions([restrained.supports])

@@ -12,6 +12,7 @@ from abut.materials.softest import softest
 from abut.mesh.facets import bodies_at
 from abut.mesh.mesh import Mesh
 from abut.model import Force, Gravity, Model, Pressure, Traction
+from abut.problem.idle_loads import idle_loads
 
 UNLIKE = 300.0  # ratio of bodies' sizes that one would expect of metres beside millimetres, hardly of a design
 STIFF = 1e5  # ratio of Young's moduli: steel on rubber is 4e4
@@ -24,8 +25,9 @@ SOUND = {
 
 
 def units(model: Model) -> list[Finding]:
-    """Findings on sizes, moduli, loads, prescribed displacements, gravity."""
-    return [*_sizes(model), *_moduli(model), *_loads(model), *_prescribed(model), *_gravity(model)]
+    """Findings on sizes, moduli, loads, prescribed displacements, gravity, and loads that find nothing to act on."""
+    idle = [Finding("warning", one.where, one.what, one.cure) for one in idle_loads(model)]
+    return [*_sizes(model), *_moduli(model), *_loads(model), *_prescribed(model), *_gravity(model), *idle]
 
 
 def body_size(mesh: Mesh, body: str) -> float:
@@ -139,14 +141,6 @@ def _gravity(model: Model) -> list[Finding]:
         for solid in solids:
             name, density = solid.body, solid.material.density
             if density == 0.0:
-                findings.append(
-                    Finding(
-                        "warning",
-                        f"loads[{i}]",
-                        f"gravity finds no density in body '{name}'",
-                        "give its material a density",
-                    )
-                )
                 continue
             speed = float(np.sqrt(solid.material.modulus / density))
             for unit, (least, most, slow, fast) in SOUND.items():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,7 @@ from abut.job.material_tables import MATERIALS
 from abut.job.other_names import key_called, kind_said
 from abut.job.parameters import field_names, parameters, worked_out
 from abut.job.result_fields import Named, read_fields, told, with_fields
-from abut.job.schema import EquationTable, JobFile, MeshTable
+from abut.job.schema import EquationTable, JobFile, MeshTable, OverclosureTable
 from abut.job.start import Start
 from abut.job.thin import with_thin
 from abut.job.times import with_shares
@@ -61,7 +61,8 @@ GENERATORS: Mapping[str, Callable[..., Mesh]] = {
 }
 
 # pydantic's names for one of several types that a value may have
-CHOICES = ("str", "int", "float", "list[str]", "list[float]", "list[list[float]]")
+CHOICES = ("str", "int", "float", OverclosureTable.__name__)
+ALTERNATIVES = ("list[", "literal[", "function-before[")
 DECK = ".inp"
 TABLES = ("model_type", "model_attributes_type", "dict_type")  # what pydantic calls the want of one
 
@@ -294,7 +295,7 @@ def _refined(arguments: Json, generator: Callable[..., Mesh], times: int) -> Jso
 
 def _explain(error: Json, data: Json) -> str:
     """One problem in words, with its place as in ``contacts[0].tagret``."""
-    location = [part for part in error["loc"] if part not in (*LOADS, *MATERIALS, *CHOICES)]
+    location = _location(error["loc"])
     place = ""
     for part in location:
         place += f"[{part}]" if isinstance(part, int) else f".{part}" if place else str(part)
@@ -312,10 +313,21 @@ def _explain(error: Json, data: Json) -> str:
     if kind == "finite_number":
         return f"{place}: expected a finite number, got {error['input']!r}"
     if kind in TABLES:
-        return f"{place}: expected a table, [{place}] with its keys below it, got {error['input']!r}"
+        written = (
+            f"{location[-1]} = {{ ... }} with its keys inside" if "[" in place else f"[{place}] with its keys below it"
+        )
+        return f"{place}: expected a table, {written}, got {error['input']!r}"
     if kind == "list_type" and len(location) == 1 and isinstance(error["input"], dict):
         return f"{place}: expected a list: write [[{place}]] instead of [{place}], once for each"
     return f"{place}: {error['msg'].replace('Input should be', 'expected')}, got {error['input']!r}"
+
+
+def _location(given: Sequence[Any]) -> list[Any]:
+    """Keys and numbers of entries as they stand in the file: without the kind of a load or a material, after its number or
+    name, and without the alternatives that a value may be one of."""
+    tagged = given[0] in ("loads", "materials") and len(given) > 2 and given[2] in (*LOADS, *MATERIALS)
+    keys = [*given[:2], *given[3:]] if tagged else list(given)
+    return [part for part in keys if part not in CHOICES and not str(part).startswith(ALTERNATIVES)]
 
 
 def _suggest(location: list[Any], data: Json) -> str:

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from abut.job.derived import table_of
-from abut.job.table import Number, OneOf, Table, Time
+from abut.job.table import OneOf, Positive, Table, Time
 from abut.model.modes import Buckling, Frequencies
 from abut.model.solve_options import LINEAR, SolveOptions
 from abut.model.step_choice import WORDS as STEPS
@@ -25,7 +25,7 @@ class StepTable(Table):
     """a part of the time, whose name stands for its end"""
 
     name: str
-    period: Annotated[Number, Field(gt=0)] = 1.0
+    period: Positive = 1.0
     increments: Annotated[int, Field(ge=1)] = 1
 
 

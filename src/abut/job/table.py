@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationInfo, WithJsonSchema
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, WithJsonSchema
 from pydantic_core import PydanticCustomError
 from pydantic_core.core_schema import CoreSchema, literal_schema
 
@@ -20,7 +20,15 @@ class Table(BaseModel):
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False, strict=True)
 
 
-Number = Annotated[float, Field(strict=False)]
+def _no_truth_value(value: object) -> object:
+    """The value, unless it is true or false, which Python takes for 1 and 0."""
+    if isinstance(value, bool):
+        raise PydanticCustomError("number", "Input should be a number")
+    return value
+
+
+Number = Annotated[float, Field(strict=False), BeforeValidator(_no_truth_value)]
+Positive = Annotated[float, Field(strict=False, gt=0), BeforeValidator(_no_truth_value)]
 Time = Annotated[Number, WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "string"}]})]  # or the name of a step
 HISTORY = "pairs of time (0 to 1 over all steps) and factor; linear between; left out: the factor is the time"
 Points = Annotated[list[Annotated[list[Time], Field(min_length=2, max_length=2)]], Field(description=HISTORY)]

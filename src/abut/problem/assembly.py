@@ -26,6 +26,7 @@ from abut.problem.follower_loads import FollowerLoads
 from abut.problem.free_modes import floats_of, free_mode_springs
 from abut.problem.held_motions import HeldMotions, neutral_in
 from abut.problem.holds import Holds
+from abut.problem.idle_loads import idle_loads
 from abut.problem.kinematics import Kinematics
 from abut.problem.loads import Loads, followers, loads
 from abut.problem.other_fields import other_fields
@@ -33,7 +34,7 @@ from abut.problem.pair import Pair
 from abut.problem.penetrations import Penetrations
 from abut.problem.preloads import LockedPreloads
 from abut.problem.problem import ContactProblem
-from abut.problem.restraint import require_balance, require_unmoved, restraint
+from abut.problem.restraint import helped, require_balance, require_unmoved, restraint
 from abut.problem.springs import Springs
 from abut.problem.terms import Term
 from abut.problem.turning_ties import CurrentTie, turning_tie
@@ -72,11 +73,12 @@ def assemble(
     observe(Phase("cutting and integrating the interface"))
     every = finite_pairs(model, constraints) if model.finite else pairs(model, constraints, backend.couple)
     _describe(every, note)
+    for idle in idle_loads(model):
+        note(f"{idle.where}: {idle.what}, and does nothing there; {idle.cure}")
     clock.mark("interface")
     observe(Phase("checking for unconstrained rigid-body motions"))
-    restrained, passing = restraint(model.mesh, constraints, every), Holds.of(model)
-    for helps in (sprung, passing):
-        restrained = restrained if helps is None else restrained.helped_by(helps.resistance(restrained.rigid.modes))
+    passing = Holds.of(model)
+    restrained = helped(restraint(model.mesh, constraints, every), (sprung, passing))
     ends = loaded.at_ends(model)
     neutral, settled = neutral_in(model, restrained, ends)
     rigid, resisted = restrained.rigid, restrained.everything

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +27,14 @@ UNBALANCED = 1e-9  # force that no contact balances, over the sum of all, from w
 SLIGHT = 1e-9  # change of a gap over the motion that is rounding
 EDGES = 16  # of the pyramid round a cone of friction
 NOTHING = 1e-10  # share of a row that works on a rigid motion below which it is rounding
+
+
+class Resists(Protocol):
+    """What resists rigid motions by itself."""
+
+    def resistance(self, motions: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Gram matrix (m, m) of motions (dim n_points, m) by what it takes of them, of the size of one."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -302,6 +311,13 @@ def require_unmoved(restraint: Restraint, forces: Sequence[NDArray[np.float64]])
             f"{motion}: contact can only push it that way, and no support, other contact or load opposes that; add a "
             "support, the body that it rests on, or the load that keeps it in place"
         )
+
+
+def helped(restrained: Restraint, helps: Iterable[Resists | None]) -> Restraint:
+    """The same with all that resists beside supports and contact: springs, supports that come or go."""
+    for one in helps:
+        restrained = restrained if one is None else restrained.helped_by(one.resistance(restrained.rigid.modes))
+    return restrained
 
 
 def restraint(mesh: Mesh, constraints: Constraints, pairs: Sequence[Pair]) -> Restraint:

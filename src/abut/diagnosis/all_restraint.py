@@ -1,0 +1,17 @@
+"""What resists rigid motions of a model: supports, contact, springs, and supports that come or go."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from abut.model import Model
+from abut.problem.constraints import Constraints
+from abut.problem.holds import Holds
+from abut.problem.pair import Pair
+from abut.problem.restraint import Restraint, helped, restraint
+from abut.problem.springs import Springs
+
+
+def all_restraint(model: Model, constraints: Constraints, pairs: Sequence[Pair]) -> Restraint:
+    """Of supports and ``pairs``, helped by springs and holds, as a run has it."""
+    return helped(restraint(model.mesh, constraints, pairs), (Springs.of(model), Holds.of(model)))
