@@ -26,7 +26,8 @@ Answer at_points(const Matrix<double> &strain, const Matrix<double> &before, std
       for (std::size_t i = n * part / parts; i < n * (part + 1) / parts; ++i) {
         double own[STRAINS];
         std::copy_n(strain.data() + i * STRAINS, STRAINS, own);
-        const Dense told = respond(i, own, before.data() + i * h, after.data() + i * h, &stress[i * STRAINS]);
+        Dense told = respond(i, own, before.data() + i * h, after.data() + i * h, &stress[i * STRAINS]);
+        turn_back(told);
         std::copy_n(told.c, STRAINS * STRAINS, &tangent[i * STRAINS * STRAINS]);
       }
     });

@@ -1,8 +1,11 @@
 // Finite strains by the total Lagrangian description, docs/theory/finite-deformation.md.
 #pragma once
+#include "corner_modes.hpp"
+#include "first_moduli.hpp"
 #include "hyperelastic.hpp"
 #include "kinematics.hpp"
 #include "last_node.hpp"
+#include "reference_moduli.hpp"
 #include <cmath>
 
 namespace abut {
@@ -17,7 +20,7 @@ public:
 
   explicit FiniteStrain(const Cells &cells)
       : cells(cells), n(cells.n), gradient(cells.rule * n * dim), hoop(axisymmetric ? cells.rule * n : 0),
-        volume(cells.rule), points(cells.rule), response(n * RESPONSE) {
+        volume(cells.rule), points(cells.rule), response(n * RESPONSE), modes(modes_of(cells)) {
     if (cells.mean_dilatation)
       centre_rule();
   }
@@ -25,7 +28,8 @@ public:
   // Moves to the cell with nodes at x (n, dim).
   void place(const double *x) {
     for (std::size_t q = 0; q < cells.rule; ++q) {
-      volume[q] = gradients<dim>(x, n, cells.derivatives + q * n * dim, &gradient[q * n * dim]) * cells.weights[q];
+      const double *derivatives = cells.derivatives + q * n * dim;
+      volume[q] = gradients<dim>(x, n, derivatives, &gradient[q * n * dim], points[q].reference) * cells.weights[q];
       if constexpr (axisymmetric)
         volume[q] *= 2 * std::numbers::pi * hoops(x, cells.shapes + q * n, &hoop[q * n]);
     }
@@ -56,7 +60,7 @@ public:
       determinant = points[q].det;
       if (!(determinant > 0) || !std::isfinite(determinant))
         return false;
-      points[q].scale = cells.mean_dilatation ? std::pow(centre.det / points[q].det, 1.0 / SCALED) : 1;
+      points[q].scale = cells.mean_dilatation ? root(centre.det / points[q].det) : 1;
     }
     return true;
   }
@@ -99,7 +103,7 @@ public:
     for (int a = 0; a < dim; ++a)
       for (int b = 0; b < dim; ++b)
         for (int p = 0; p < dim; ++p)
-          first[a][b] += w * f[a][p] * stress[AT[p][b]];
+          first[a][b] += w * f[a][p] * stress[COMPONENT[p][b]];
     for (std::size_t i = 0; i < n; ++i) {
       const double *g = &gradient[(q * n + i) * dim];
       for (int a = 0; a < dim; ++a)
@@ -115,7 +119,11 @@ public:
 
   // Adds the stiffness (n, n, dim, dim) at point q, theory (D6), (D8), of the nodes that ``complete`` does not add;
   // half: for nodes i <= k only.
-  void add_stiffness(std::size_t q, const Dense &tangent, const double *stress, bool half, double *block) {
+  void add_stiffness(std::size_t q, const Dense &tangent, const double *stress, bool symmetric, double *block) {
+    const bool half = symmetric && this->symmetric();
+    if constexpr (!axisymmetric)
+      if (modes)
+        return symmetric ? set_moduli<true>(q, tangent, stress) : set_moduli<false>(q, tangent, stress);
     respond(q, tangent, stress);
     for (std::size_t i = 0; i < added(); ++i) {
       double g[dim]; // local, so that it stays in registers
@@ -133,8 +141,17 @@ public:
     }
   }
 
+  // Whether the stiffness is that of modes: tangents may be along axes of their own, and ``complete`` writes the whole.
+  bool by_modes() const { return modes.has_value(); }
+
   // Adds what is left once all points are in: nodes whose equal displacement does not strain the cell.
-  void complete(bool half, double *block) const { complete_from<dim>(added(), n, half, block); }
+  void complete(bool symmetric, double *block) {
+    const bool half = symmetric && this->symmetric();
+    if (modes)
+      modes->write(half, cells.mean_dilatation ? centre_pushed.data() : nullptr, block);
+    else
+      complete_from<dim>(added(), n, half, block);
+  }
 
   // Turns a stress at point q into that of Cauchy.
   void to_cauchy(std::size_t q, double *stress) const {
@@ -158,62 +175,13 @@ public:
   const double *swelling() const { return cells.shapes; } // by which heat swells the cell
 
 protected:
+  using Deformed = abut::Deformed<dim>;
   static constexpr int SCALED = dim == 2 && !axisymmetric ? 2 : 3; // directions that F-bar scales
+
+  static double root(double x) { return SCALED == 3 ? std::cbrt(x) : std::sqrt(x); }
 
   // Nodes, from the first on, whose stiffness is integrated.
   std::size_t added() const { return axisymmetric ? n : n - 1; }
-
-  // The deformation gradient at a point, its determinant and inverse, the strain, and the factor of F-bar.
-  struct Deformed {
-    double f[3][3], inverse[3][3], det, strain[STRAINS], scale = 1;
-
-    void set(const double (&slope)[3][3]) {
-      for (int a = 0; a < 3; ++a)
-        for (int b = 0; b < 3; ++b)
-          f[a][b] = slope[a][b] + (a == b);
-      det = f[0][0] * (f[1][1] * f[2][2] - f[1][2] * f[2][1]) - f[0][1] * (f[1][0] * f[2][2] - f[1][2] * f[2][0]) +
-            f[0][2] * (f[1][0] * f[2][1] - f[1][1] * f[2][0]);
-      for (int a = 0; a < 3; ++a) {
-        const int b = (a + 1) % 3;
-        double own = 0, mixed = 0; // of slope^T slope: small strains lose no digits
-        for (int c = 0; c < 3; ++c)
-          own += slope[c][a] * slope[c][a], mixed += slope[c][a] * slope[c][b];
-        strain[a] = slope[a][a] + own / 2;
-        strain[3 + a] = slope[a][b] + slope[b][a] + mixed;
-      }
-    }
-    void invert() {
-      for (int a = 0; a < 3; ++a)
-        for (int b = 0; b < 3; ++b) {
-          const int a1 = (a + 1) % 3, a2 = (a + 2) % 3, b1 = (b + 1) % 3, b2 = (b + 2) % 3;
-          inverse[b][a] = (f[a1][b1] * f[a2][b2] - f[a1][b2] * f[a2][b1]) / det;
-        }
-    }
-  };
-
-  // Of det F from one state to another, without what is linear in the displacements between them.
-  static double bent(Deformed from, const Deformed &to) {
-    double h[3][3] = {{0}};
-    from.invert();
-    for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b)
-        for (int c = 0; c < 3; ++c)
-          h[a][b] += (to.f[a][c] - from.f[a][c]) * from.inverse[c][b];
-    return from.det * (second(h) + third(h));
-  }
-
-  // Invariants of a tensor; the third one is its determinant.
-  static double second(const double (&h)[3][3]) {
-    return h[0][0] * h[1][1] - h[0][1] * h[1][0] + h[1][1] * h[2][2] - h[1][2] * h[2][1] + h[2][2] * h[0][0] -
-           h[2][0] * h[0][2];
-  }
-  static double third(const double (&h)[3][3]) {
-    return h[0][0] * (h[1][1] * h[2][2] - h[1][2] * h[2][1]) - h[0][1] * (h[1][0] * h[2][2] - h[1][2] * h[2][0]) +
-           h[0][2] * (h[1][0] * h[2][1] - h[1][1] * h[2][0]);
-  }
-
-  static constexpr int AT[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}}; // components of a symmetric tensor
-  static constexpr int RESPONSE = dim * dim * dim + (axisymmetric ? dim : 0);
 
   // Sum over the directions of a gradient, of what lies that many numbers apart.
   template <int apart> static double along(const double (&g)[dim], const double *values) {
@@ -223,12 +191,7 @@ protected:
     return sum;
   }
 
-  static void tensor(const double *stress, double (&sigma)[3][3]) {
-    for (int a = 0; a < 3; ++a) {
-      sigma[a][a] = stress[a];
-      sigma[a][(a + 1) % 3] = sigma[(a + 1) % 3][a] = stress[3 + a];
-    }
-  }
+  static constexpr int RESPONSE = dim * dim * dim + (axisymmetric ? dim : 0);
 
   static double stretched(const Deformed &at, int a, int b) {
     return a < SCALED && b < SCALED ? at.scale * at.f[a][b] : at.f[a][b];
@@ -269,51 +232,17 @@ protected:
       result[0] += at.inverse[2][2] * hoop;
   }
 
-  // By the gradients of displacements, times the point's weight: of the first stress of Piola and Kirchhoff, stress (a,
-  // b) by slope (c, d) at [d][b][a][c], and of its hoop component.
-  struct Moduli {
-    double plane[dim][dim][dim][dim], hoop[dim][dim], of_hoop[dim][dim], own; // hoop: [d][c], of_hoop: [b][a]
-  };
-
-  static void linearise(const Deformed &at, double w, const double *c, Moduli &result) {
-    double half[STRAINS][dim][dim] = {{{0}}}; // w times the second stress by the slope, [s][d][c]
-    for (int s = 0; s < STRAINS; ++s)
-      for (int d = 0; d < dim; ++d)
-        for (int a = 0; a < dim; ++a)
-          for (int p = 0; p < dim; ++p)
-            half[s][d][a] += w * c[s * STRAINS + AT[p][d]] * at.f[a][p];
-    for (int d = 0; d < dim; ++d)
-      for (int b = 0; b < dim; ++b)
-        for (int a = 0; a < dim; ++a)
-          for (int e = 0; e < dim; ++e) {
-            double sum = 0;
-            for (int p = 0; p < dim; ++p)
-              sum += at.f[a][p] * half[AT[p][b]][d][e];
-            result.plane[d][b][a][e] = sum;
-          }
-    if constexpr (axisymmetric) {
-      const double out = at.f[2][2];
-      for (int d = 0; d < dim; ++d)
-        for (int a = 0; a < dim; ++a) {
-          result.hoop[d][a] = out * half[2][d][a], result.of_hoop[d][a] = 0;
-          for (int p = 0; p < dim; ++p)
-            result.of_hoop[d][a] += w * out * at.f[a][p] * c[AT[p][d] * STRAINS + 2];
-        }
-      result.own = w * out * out * c[2 * STRAINS + 2];
-    }
-  }
-
   // response[k]: of the first stress at point q, times its weight, by displacements of node k: stress (a, b) by c at
   // [b][a][c], then the hoop stress by c.
   void respond(std::size_t q, const Dense &tangent, const double *stress) {
     Deformed &at = points[q];
     const double w = volume[q] * power(q), square = at.scale * at.scale;
-    Moduli moduli;
-    linearise(at, w * square, tangent.c, moduli);
+    FirstModuli<dim> moduli;
+    linearise<dim, axisymmetric>(at, w * square, tangent.c, moduli);
     for (int d = 0; d < dim; ++d) // what turns with the stress
       for (int b = 0; b < dim; ++b)
         for (int a = 0; a < dim; ++a)
-          moduli.plane[d][b][a][a] += w * stress[AT[b][d]];
+          moduli.plane[d][b][a][a] += w * stress[COMPONENT[b][d]];
     if constexpr (axisymmetric)
       moduli.own += w * stress[2];
     for (std::size_t k = 0; k < added(); ++k) {
@@ -331,16 +260,25 @@ protected:
       add_dilatation(q, tangent, stress);
   }
 
-  static void add_hoop(const Moduli &moduli, const double *g, double hoop, double *r) {
-    for (int b = 0; b < dim; ++b)
-      for (int a = 0; a < dim; ++a)
-        r[(b * dim + a) * dim] += moduli.of_hoop[b][a] * hoop;
-    for (int c = 0; c < dim; ++c) {
-      double sum = c == 0 ? moduli.own * hoop : 0;
-      for (int d = 0; d < dim; ++d)
-        sum += moduli.hoop[d][c] * g[d];
-      r[dim * dim * dim + c] = sum;
-    }
+  static std::optional<CornerModes<dim>> modes_of(const Cells &cells) {
+    return axisymmetric || cells.pressures ? std::nullopt : CornerModes<dim>::of(cells);
+  }
+
+  // Sets the moduli of point q along reference coordinates.
+  template <bool upper> void set_moduli(std::size_t q, const Dense &tangent, const double *stress) {
+    Deformed &at = points[q];
+    const double w = volume[q] * power(q), factor = w * at.scale * at.scale;
+    const ReferenceLines<dim> lines(at.f, at.reference, tangent.axes);
+    auto &moduli = modes->moduli(q);
+    double inward[dim][dim];
+    lines.template moduli<upper>(tangent.c, factor, &moduli[0][0][0][0]);
+    to_reference(at, w, stress, inward);
+    add_turn<dim, upper>(at, inward, moduli);
+    if (!cells.mean_dilatation)
+      return;
+    if constexpr (upper)
+      mirror<dim>(moduli);
+    abut::add_dilatation(at, tangent.c, factor, lines, inward, modes->by_centre(q), moduli);
   }
 
   // Adds to the response what changes with the factor of F-bar, theory (D8).
@@ -358,7 +296,7 @@ protected:
     for (int b = 0; b < dim; ++b)
       for (int a = 0; a < dim; ++a)
         for (int p = 0; p < dim; ++p)
-          first[b][a] += w * at.f[a][p] * by_scale[AT[p][b]];
+          first[b][a] += w * at.f[a][p] * by_scale[COMPONENT[p][b]];
     at.invert();
     for (std::size_t k = 0; k < added(); ++k) {
       double own[dim], *r = &response[k * RESPONSE];
@@ -394,6 +332,7 @@ protected:
   std::vector<Deformed> points;     // (rule)
   Deformed centre;                  // where F-bar has its dilatation from
   std::vector<double> response;     // (n, RESPONSE)
+  std::optional<CornerModes<dim>> modes;
   std::vector<double> centre_shapes, centre_derivatives, centre_gradient, centre_hoop, centre_pushed;
 };
 

@@ -6,6 +6,7 @@
 #include "kinematics.hpp"
 #include "materials.hpp"
 #include "mixed_strain.hpp"
+#include "turned.hpp"
 #include <algorithm>
 #include <cstdint>
 #include <new>
@@ -157,7 +158,8 @@ private:
       const double stretch = 1 + (state.thermal ? at_point(kinematics.swelling(), n, q, state.thermal + c * n) : 0);
       double *const at = &stress[q * STRAINS];
       // In its place: copies of a tangent take as long as some laws.
-      new (&tangent[q]) Tangent(heated(material, Point{c, c * cells.rule + q, rows.has(own[0])}, stretch, strain, at));
+      const Point point{c, c * cells.rule + q, rows.has(own[0]), q ? &tangent[q - 1] : nullptr};
+      new (&tangent[q]) Tangent(heated(material, point, stretch, strain, at));
       if (!tangent[q].sound)
         return kinematics.determinant(q);
       if (material.plane_stress)
@@ -186,8 +188,10 @@ private:
     if (!past->deform(u.data(), determinant))
       return;
     kinematics.bend(*past, state.guessed, bent.data());
-    for (std::size_t q = 0; q < cells.rule; ++q)
+    for (std::size_t q = 0; q < cells.rule; ++q) {
+      turn_back(tangent[q]);
       foresee_pressure(&strains[q * STRAINS], bent[q], &foreseen[q * STRAINS], tangent[q].c);
+    }
     turning = foreseen.data();
     if constexpr (requires { kinematics.collect(foreseen.data()); })
       kinematics.collect(foreseen.data());
@@ -210,25 +214,30 @@ private:
   }
 
   void add_stiffness() {
-    std::fill(block.begin(), block.end(), 0.0);
+    if (!kinematics.by_modes())
+      std::fill(block.begin(), block.end(), 0.0);
     for (std::size_t q = 0; q < cells.rule; ++q)
-      if constexpr (Kinematics::finite)
-        kinematics.add_stiffness(q, tangent[q], turning + q * STRAINS, half(), block.data());
-      else if constexpr (std::is_same_v<Tangent, Moduli>)
+      if constexpr (Kinematics::finite) {
+        if (!kinematics.by_modes())
+          turn_back(tangent[q]);
+        kinematics.add_stiffness(q, tangent[q], turning + q * STRAINS, material.symmetric(), block.data());
+      } else if constexpr (std::is_same_v<Tangent, Moduli>)
         kinematics.add_stiffness(q, tangent[q], block.data());
       else
         kinematics.add_stiffness(q, tangent[q].c, half(), block.data());
     if constexpr (std::is_same_v<Tangent, Moduli>)
       kinematics.finish(tangent[0], block.data());
     else
-      kinematics.complete(half(), block.data());
+      kinematics.complete(material.symmetric(), block.data());
     for (std::size_t i = 0; i < n; ++i)
       if (rows.has(own[i]))
         scatter(i);
   }
 
-  // Whether the block is symmetric.
+  // Whether only half of the block, which is symmetric, is added up.
   bool half() const {
+    if (kinematics.by_modes())
+      return false;
     if constexpr (Kinematics::finite)
       return material.symmetric() && kinematics.symmetric();
     else

@@ -56,10 +56,10 @@ template <int dim> Jacobian<dim> jacobian(const double *x, std::size_t n, const 
   }
 }
 
-// Gradients (n, dim) of the shape functions; returns the determinant.
-template <int dim> double gradients(const double *x, std::size_t n, const double *d, double *gradient) {
+// Gradients (n, dim) of the shape functions, and the inverse of the Jacobian; returns the determinant.
+template <int dim>
+double gradients(const double *x, std::size_t n, const double *d, double *gradient, double (&inverse)[dim][dim]) {
   const Jacobian<dim> j = jacobian<dim>(x, n, d);
-  double inverse[dim][dim];
   j.invert(inverse);
   for (std::size_t i = 0; i < n; ++i)
     for (int a = 0; a < dim; ++a) {
@@ -69,6 +69,10 @@ template <int dim> double gradients(const double *x, std::size_t n, const double
       gradient[i * dim + a] = sum;
     }
   return j.det;
+}
+template <int dim> double gradients(const double *x, std::size_t n, const double *d, double *gradient) {
+  double inverse[dim][dim];
+  return gradients<dim>(x, n, d, gradient, inverse);
 }
 
 } // namespace abut

@@ -185,6 +185,7 @@ public:
     }
   }
 
+  static constexpr bool by_modes() { return false; } // as of finite strains
   double reference_volume(std::size_t q) const { return volume[q]; }
 
   // Shape functions (rule, n) by which heat swells the cell: of a mixed one as far as its pressures see it.

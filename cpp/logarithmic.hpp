@@ -2,7 +2,8 @@
 // from the strain of Green and Lagrange to the logarithmic one, and from the stress conjugate to that to the second one
 // of Piola and Kirchhoff, with the tangent.
 #pragma once
-#include "materials.hpp"
+#include "each.hpp"
+#include "turned.hpp"
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,14 +12,16 @@ namespace abut {
 
 class Logarithm {
 public:
-  // At a strain of Green and Lagrange, shear doubled.
-  explicit Logarithm(const double *strain) {
+  // At a strain of Green and Lagrange, shear doubled. near: null, or axes that are not far from the principal ones.
+  explicit Logarithm(const double *strain, const double (*near)[3] = nullptr) {
     for (int s = 0; s < STRAINS; ++s)
       matrix[I[s]][J[s]] = matrix[J[s]][I[s]] = strain[s] / (s < 3 ? 1 : 2);
+    if (near)
+      start(near);
     diagonalise();
     for (int a = 0; a < 3; ++a)
       sound = sound && matrix[a][a] > -0.5;
-    rotations();
+    strain_rotation(axes, of_strain);
     set();
   }
 
@@ -47,61 +50,69 @@ public:
   }
   double across() const { return matrix[2][2]; }
 
-  // Turns stress and tangent (6, 6) in the space of logarithms into those of Piola, Kirchhoff, Green and Lagrange,
-  // theory (Y9), (Y10).
-  void back(double *stress, double *c) const {
-    Square own, wide, given, rows, columns; // of the turn, and transposed
+  // Turns stress and tangent in the space of logarithms into those of Piola, Kirchhoff, Green and Lagrange, theory
+  // (Y9), (Y10), the tangent along the principal axes.
+  void back(double *stress, Dense &tangent) const {
+    Square given, wide, own, rows, columns; // of the turn, and transposed
+    stress_rotation(columns);
     for (int m = 0; m < STRAINS; ++m)
-      for (int t = 0; t < STRAINS; ++t) {
-        rows[t][m] = columns[m][t] = of_strain[t][m] * doubled(m) / doubled(t);
-        given[m][t] = c[m * STRAINS + t];
-      }
+      for (int t = 0; t < STRAINS; ++t)
+        rows[t][m] = columns[m][t], given[m][t] = tangent.c[m * STRAINS + t];
     multiply(rows, given, wide);
     multiply(wide, columns, own);
     double turned[STRAINS];
-    turn(stress, turned);
-    finish(turned, own, stress, c);
+    turn(columns, stress, turned);
+    std::copy_n(&own[0][0], STRAINS * STRAINS, tangent.c);
+    finish(turned, stress, tangent);
   }
 
   // The same of a tangent in parts.
-  void back(double *stress, const Flowing &tangent, double *c) const {
+  void back(double *stress, const Flowing &parts, Dense &tangent) const {
     double turned[STRAINS];
-    Square own;
-    Flowing along = tangent;
-    turn(stress, turned);
-    if (tangent.flows)
-      turn(tangent.stress, along.stress), turn(tangent.normal, along.normal);
-    along.write(&own[0][0]);
-    finish(turned, own, stress, c);
+    Square columns;
+    Flowing along = parts;
+    stress_rotation(columns);
+    turn(columns, stress, turned);
+    if (parts.flows)
+      turn(columns, parts.stress, along.stress), turn(columns, parts.normal, along.normal);
+    along.write(tangent.c);
+    finish(turned, stress, tangent);
   }
 
   // The same of stress and tangent along the principal axes, of laws that are isotropic: no shear stress, shear apart.
-  void back_from_principal(double *stress, double *c) const {
-    Square wide;
+  void back_from_principal(double *stress, Dense &tangent) const {
     const Second second(*this);
+    double *const c = tangent.c;
     for (int s = 0; s < 3; ++s) {
-      double own[3];
       for (int m = 0; m < 3; ++m)
-        own[m] = c[s * STRAINS + m] * first[s] * first[m];
-      own[s] += 2 * second.of[s][s][s] * stress[s];
-      for (int t = 0; t < STRAINS; ++t)
-        wide[s][t] = own[0] * of_strain[0][t] + own[1] * of_strain[1][t] + own[2] * of_strain[2][t];
+        c[s * STRAINS + m] *= first[s] * first[m];
+      c[s * STRAINS + s] += 2 * second.same[s] * stress[s];
     }
     for (int s = 3; s < STRAINS; ++s) {
-      const int i = I[s], k = J[s];
-      const double bending = (second.of[i][i][k] * stress[i] + second.of[i][k][k] * stress[k]) / 2;
-      const double own = c[s * STRAINS + s] * first[s] * first[s] + bending;
-      for (int t = 0; t < STRAINS; ++t)
-        wide[s][t] = own * of_strain[s][t];
+      const double bending = (second.first_twice[s] * stress[I[s]] + second.last_twice[s] * stress[J[s]]) / 2;
+      c[s * STRAINS + s] = c[s * STRAINS + s] * first[s] * first[s] + bending;
     }
     double turned[STRAINS];
     std::copy_n(stress, STRAINS, turned);
-    write(turned, wide, stress, c);
+    write(turned, stress, tangent);
   }
 
 private:
   static constexpr int I[STRAINS] = {0, 1, 2, 0, 1, 2}, J[STRAINS] = {0, 1, 2, 1, 2, 0};
   static constexpr int AT[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+
+  // Turns the strain to axes.
+  void start(const double (*near)[3]) {
+    double half[3][3];
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        axes[i][j] = near[i][j];
+        half[i][j] = matrix[i][0] * near[0][j] + matrix[i][1] * near[1][j] + matrix[i][2] * near[2][j];
+      }
+    for (int i = 0; i < 3; ++i)
+      for (int j = i; j < 3; ++j)
+        matrix[i][j] = matrix[j][i] = near[0][i] * half[0][j] + near[1][i] * half[1][j] + near[2][i] * half[2][j];
+  }
 
   // Jacobi's rotations: every eigenvalue to the digits that the strain has.
   void diagonalise() {
@@ -146,32 +157,6 @@ private:
 
   static constexpr double doubled(int s) { return s < 3 ? 1 : 2; }
 
-  using Square = double[STRAINS][STRAINS];
-  // a b; written once, as zeros would take as long as a factor.
-  static void multiply(const Square &a, const Square &b, Square &result) {
-    for (int s = 0; s < STRAINS; ++s)
-      for (int t = 0; t < STRAINS; ++t) {
-        double sum = a[s][0] * b[0][t];
-        for (int m = 1; m < STRAINS; ++m)
-          sum += a[s][m] * b[m][t];
-        result[s][t] = sum;
-      }
-  }
-
-  // To the principal axes, of strains with doubled shear. That of stresses doubles its columns of shear and halves its
-  // rows of shear.
-  void rotations() {
-    for (int s = 0; s < STRAINS; ++s) {
-      const int a = I[s], b = J[s];
-      double *const row = of_strain[s];
-      for (int i = 0; i < 3; ++i) {
-        const int j = (i + 1) % 3;
-        row[i] = doubled(s) * axes[i][a] * axes[i][b];
-        row[3 + i] = doubled(s) / 2 * (axes[i][a] * axes[j][b] + axes[j][a] * axes[i][b]);
-      }
-    }
-  }
-
   // First divided differences of ln(1 + 2 g) / 2 over the eigenvalues g.
   void set() {
     for (int a = 0; a < 3; ++a)
@@ -192,17 +177,23 @@ private:
     return 1 - x * (1.0 / 2 - x * (1.0 / 3 - x * (1.0 / 4 - x * (1.0 / 5 - x / 6))));
   }
 
-  // Twice the second divided differences, by three eigenvalues.
+  // Twice the second divided differences, by three eigenvalues: thrice the same, of shear component s two of the first
+  // and two of the last index, and all three.
   struct Second {
-    double of[3][3][3];
+    double same[3], first_twice[STRAINS], last_twice[STRAINS];
 
     explicit Second(const Logarithm &log) {
       for (int i = 0; i < 3; ++i)
-        for (int j = i; j < 3; ++j)
-          for (int k = j; k < 3; ++k) {
-            const double value = i == k ? -log.first[i] * log.first[i] : log.second(i, j, k);
-            of[i][j][k] = of[i][k][j] = of[j][i][k] = of[j][k][i] = of[k][i][j] = of[k][j][i] = value;
-          }
+        same[i] = -log.first[i] * log.first[i];
+      for (int s = 3; s < STRAINS; ++s) {
+        const int i = I[s], k = J[s];
+        const double apart = log.square[i] - log.square[k];
+        if (std::abs(apart) > 2 * NEAR * (log.square[i] + log.square[k])) {
+          const double over = 2 / apart;
+          first_twice[s] = over * (log.first[i] - log.first[s]), last_twice[s] = over * (log.first[s] - log.first[k]);
+        } else
+          first_twice[s] = log.second(i, i, k), last_twice[s] = log.second(i, k, k);
+      }
     }
   };
 
@@ -226,57 +217,57 @@ private:
 
   double difference(int a, int b) const { return first[AT[a][b]]; }
 
-  // A stress along the principal axes.
-  void turn(const double *stress, double *result) const {
+  // Stresses along the principal axes by those along coordinates, as rows: by the latter's component m at [m].
+  void stress_rotation(Square &result) const {
+    for (int m = 0; m < STRAINS; ++m)
+      for (int s = 0; s < STRAINS; ++s)
+        result[m][s] = of_strain[s][m] * (doubled(m) / doubled(s));
+  }
+
+  static void turn(const Square &columns, const double *stress, double *__restrict result) {
     for (int s = 0; s < STRAINS; ++s) {
-      double sum = 0;
-      for (int m = 0; m < STRAINS; ++m)
-        sum += of_strain[s][m] * doubled(m) * stress[m];
-      result[s] = sum / doubled(s);
+      double sum = columns[0][s] * stress[0];
+      each<1, STRAINS>([&](auto m) { sum += columns[m][s] * stress[m]; });
+      result[s] = sum;
     }
   }
 
   // Stress and tangent from those of logarithms along the principal axes.
-  void finish(const double *turned, Square &own, double *stress, double *c) const {
-    Square wide;
+  void finish(const double *turned, double *stress, Dense &tangent) const {
     for (int s = 0; s < STRAINS; ++s)
       for (int t = 0; t < STRAINS; ++t)
-        own[s][t] *= first[s] * first[t];
-    add_bending(turned, own);
-    multiply(own, of_strain, wide);
-    write(turned, wide, stress, c);
+        tangent.c[s * STRAINS + t] *= first[s] * first[t];
+    add_bending(turned, tangent.c);
+    write(turned, stress, tangent);
   }
 
   // Adds what the stress contributes as the axes turn and the first differences change, in principal axes: pairs of
   // components that share an index.
-  void add_bending(const double *stress, Square &c) const {
+  void add_bending(const double *stress, double *c) const {
     const Second second(*this);
-    const auto &f = second.of;
+    const double all = this->second(0, 1, 2) / 2;
+    const auto add = [c](int s, int t, double value) { c[s * STRAINS + t] += value; };
     for (int a = 0; a < 3; ++a)
-      c[a][a] += 2 * f[a][a][a] * stress[a];
+      add(a, a, 2 * second.same[a] * stress[a]);
     for (int s = 3; s < STRAINS; ++s) {
       const int i = I[s], k = J[s], next = s == 5 ? 3 : s + 1, last = 12 - s - next; // the other shear components
-      const double at_i = f[i][i][k] * stress[s], at_k = f[i][k][k] * stress[s];
-      const double mixed = f[0][1][2] * stress[last] / 2;
-      c[i][s] += at_i, c[s][i] += at_i, c[k][s] += at_k, c[s][k] += at_k;
-      c[s][s] += (f[i][i][k] * stress[i] + f[i][k][k] * stress[k]) / 2;
-      c[s][next] += mixed, c[next][s] += mixed;
+      const double at_i = second.first_twice[s] * stress[s], at_k = second.last_twice[s] * stress[s];
+      const double mixed = all * stress[last];
+      add(i, s, at_i), add(s, i, at_i), add(k, s, at_k), add(s, k, at_k);
+      add(s, s, (second.first_twice[s] * stress[i] + second.last_twice[s] * stress[k]) / 2);
+      add(s, next, mixed), add(next, s, mixed);
     }
   }
 
-  // Stress and tangent from those along the principal axes; wide: of the latter, by strain.
-  void write(const double *turned, const Square &wide, double *__restrict stress, double *__restrict c) const {
+  // The stress from that along the principal axes, and where the tangent is.
+  void write(const double *turned, double *stress, Dense &tangent) const {
     for (int s = 0; s < STRAINS; ++s) {
       stress[s] = of_strain[0][s] * first[0] * turned[0];
       for (int m = 1; m < STRAINS; ++m)
         stress[s] += of_strain[m][s] * first[m] * turned[m];
-      for (int t = 0; t < STRAINS; ++t) {
-        double sum = of_strain[0][s] * wide[0][t];
-        for (int m = 1; m < STRAINS; ++m)
-          sum += of_strain[m][s] * wide[m][t];
-        c[s * STRAINS + t] = sum;
-      }
     }
+    tangent.turned = true;
+    std::copy_n(&axes[0][0], 9, &tangent.axes[0][0]);
   }
 
   static constexpr double NEAR = 1e-3; // from here on differences keep twelve digits, the series below all

@@ -9,13 +9,6 @@ namespace abut {
 
 constexpr int STRAINS = 6;
 
-// An integration point: of a cell, its number among all points of all cells, and whether this thread is the one to
-// write what belongs to it (cells may be visited by several).
-struct Point {
-  std::size_t cell, number;
-  bool mine;
-};
-
 // Tangents: what the stiffness of a cell is made of. Two constants of an isotropic material, or any (6, 6).
 struct Moduli {
   double lambda, mu;
@@ -25,9 +18,20 @@ struct Full {
 };
 
 // What a law says at a point: tangent and energy. sound: false where plane stress found no strain out of the plane.
+// turned: the tangent is along the columns of ``axes``, which save turning it where that is not needed.
 struct Dense {
   double c[STRAINS * STRAINS], energy;
-  bool sound;
+  bool sound, turned = false;
+  double axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+};
+
+// An integration point: of a cell, its number among all points of all cells, and whether this thread is the one to
+// write what belongs to it (cells may be visited by several). near: null, or what the law said at another point of the
+// cell, whose axes are a first guess.
+struct Point {
+  std::size_t cell, number;
+  bool mine;
+  const Dense *near = nullptr;
 };
 
 // A tangent of isotropic elasticity and of flow: diagonal times the identity of symmetric tensors, spherical times that

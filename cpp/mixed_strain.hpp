@@ -103,7 +103,7 @@ public:
     for (std::size_t k = 0; k < this->added(); ++k)
       respond(q, k, tangent, stress);
     double sigma[3][3];
-    Base::tensor(stress, sigma);
+    tensor(stress, sigma);
     for (std::size_t i = 0; i < this->added(); ++i) {
       const double *g = &gradient[(q * n + i) * dim], *own = &log_change[(q * n + i) * dim];
       for (std::size_t k = half ? i : 0; k < this->added(); ++k) {
@@ -134,7 +134,7 @@ public:
   void to_cauchy(std::size_t q, double *stress) const {
     const auto &f = points[q].f;
     double sigma[3][3], result[3][3] = {{0}};
-    Base::tensor(stress, sigma);
+    tensor(stress, sigma);
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b)
         for (int c = 0; c < 3; ++c)
@@ -163,7 +163,7 @@ private:
 
   // det(1 + slope) - 1, which keeps its digits where it is small.
   static double expansion(const double (&h)[3][3]) {
-    return h[0][0] + h[1][1] + h[2][2] + Base::second(h) + Base::third(h);
+    return h[0][0] + h[1][1] + h[2][2] + second_invariant(h) + third_invariant(h);
   }
 
   // The scaled right Cauchy-Green tensor, shear doubled: strain by the logarithm of the factor.

@@ -142,7 +142,7 @@ private:
         value = t[i + 1] + slope * (x - t[i]);
         break;
       }
-    const double fading = hardening.saturation * std::exp(-hardening.rate * x);
+    const double fading = hardening.saturation == 0 ? 0 : hardening.saturation * std::exp(-hardening.rate * x);
     return {value + hardening.slope * x + hardening.saturation - fading,
             slope + hardening.slope + hardening.rate * fading};
   }
@@ -162,15 +162,18 @@ private:
     double start, amount = 0;
     double normal[STRAINS], turning[STRAINS]; // unit normal; derivative of the shifted trial stress by the amount
     double size, excess, slope;               // of the shifted trial stress; the equation and minus its derivative
+    double kinematic, stiffening;             // modulus of the back stresses after an amount, secant and tangent
 
     Flow(const J2 &law, const double *deviator, const double *before, double start)
         : law(law), deviator(deviator), before(before), start(start) {
+      shift();
       evaluate();
     }
 
-    void evaluate() {
+    // The trial stress, shifted by what the back stresses are after an amount.
+    void shift() {
       const auto &back = law.hardening.back;
-      double kinematic = 0, stiffening = 0;
+      kinematic = 0, stiffening = 0;
       std::copy_n(deviator, STRAINS, normal);
       std::fill_n(turning, STRAINS, 0.0);
       for (std::size_t k = 0; 2 * k < back.size(); ++k) {
@@ -182,8 +185,12 @@ private:
         }
       }
       size = std::sqrt(contracted(normal, normal));
+      const double over = size > 0 ? 1 / size : 1;
       for (double &value : normal)
-        value /= size > 0 ? size : 1;
+        value *= over;
+    }
+
+    void evaluate() {
       const auto [yield, hardening] = law.yield_stress(start + amount);
       excess = ROOT * size - (3 * law.elastic.shear + kinematic) * amount - yield;
       slope = 3 * law.elastic.shear + hardening + stiffening - ROOT * contracted(normal, turning);
@@ -206,6 +213,8 @@ private:
         if (next == amount)
           break;
         amount = next;
+        if (!law.hardening.back.empty())
+          shift();
         evaluate();
       }
     }

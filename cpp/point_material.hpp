@@ -22,15 +22,16 @@ template <class Law, bool logarithmic> struct PointMaterial {
     const double *old = before ? before + at.number * law.history : nullptr;
     double *now = after && at.mine ? after + at.number * law.history : nullptr;
     double unasked[STRAINS];
-    return respond(strain, old, now, stress ? stress : unasked);
+    return respond(strain, old, now, stress ? stress : unasked, at.near ? at.near->axes : nullptr);
   }
 
-  Dense respond(double *strain, const double *old, double *now, double *stress) const {
+  Dense respond(double *strain, const double *old, double *now, double *stress,
+                const double (*near)[3] = nullptr) const {
     Dense result;
     if constexpr (!logarithmic) {
       result.sound = find(strain, old, now, stress, result);
     } else {
-      Logarithm logarithm(strain);
+      Logarithm logarithm(strain, near);
       result.energy = 0;
       result.sound = logarithm.sound;
       if (!logarithm.sound)
@@ -41,7 +42,7 @@ template <class Law, bool logarithmic> struct PointMaterial {
           Flowing parts;
           logarithm.strain(own);
           law.respond(own, old, now, stress, parts, result.energy);
-          logarithm.back(stress, parts, result.c);
+          logarithm.back(stress, parts, result);
           return result;
         }
       if constexpr (principal)
@@ -54,9 +55,9 @@ template <class Law, bool logarithmic> struct PointMaterial {
         strain[2] = logarithm.across();
       }
       if constexpr (principal)
-        logarithm.back_from_principal(stress, result.c);
+        logarithm.back_from_principal(stress, result);
       else
-        logarithm.back(stress, result.c);
+        logarithm.back(stress, result);
     }
     return result;
   }
