@@ -1,5 +1,5 @@
 """The models that every code solves: two blocks pressed flat, two blocks with the upper one tilted, without friction and
-with, a ball on a block.
+with, a ball on a block, the same on a block of metal that yields and of rubber.
 
 A case is named GEOMETRY-CELL, as in flat-hex8, tilted-tet10, hertz-hex20; its size is chosen by the number of
 displacements wanted, fixed ones included. Units are mm, N and MPa.
@@ -23,6 +23,12 @@ TILT = 2.0 * DEPTH / SIDE  # radians: the gap at the open end is twice the depth
 FRICTION = 0.3
 RADIUS, ZONE = 8.0, 1.1  # of the ball and of its fine zone
 INDENT = 0.12  # the ball is pressed down by; half of it on either side of the contact
+METAL = abut.Plastic(young=210e3, poisson=0.3, yield_stress=300.0, hardening=2000.0)
+RUBBER, HARD = (
+    abut.NeoHooke(young=young, poisson=nu, volumetric="isochoric") for young, nu in ((3.0, 0.48), (3e3, 0.3))
+)
+DENT, DENTED = 0.6, 2.2  # the ball is pressed into rubber by; fine zone there
+STEPS = 5  # of what depends on the way to it
 
 
 def _blocks(n: int, cell: str) -> tuple[Mesh, Mesh]:
@@ -65,11 +71,11 @@ def _rubbing(n: int, cell: str) -> abut.Model:
     return replace(case, contacts=[replace(own, friction=FRICTION) for own in case.contacts])
 
 
-def _hertz(n: int, cell: str) -> abut.Model:
+def _hertz(n: int, cell: str, depth: float = INDENT, zone: float = ZONE) -> abut.Model:
     """A quarter of a ball's lower half on a quarter of a block; symmetry on x = 0 and y = 0."""
     m = max(1, round(0.75 * n))
-    ball = sphere_octant(RADIUS, (0.0, 0.0, RADIUS), fine=ZONE, cells=n, growth=1.3, cell=cell)
-    fine = {"x": [0.0, ZONE], "y": [0.0, ZONE], "z": [-ZONE, 0.0]}
+    ball = sphere_octant(RADIUS, (0.0, 0.0, RADIUS), fine=zone, cells=n, growth=1.3, cell=cell)
+    fine = {"x": [0.0, zone], "y": [0.0, zone], "z": [-zone, 0.0]}
     block = box((0.0, RADIUS), (0.0, RADIUS), (-RADIUS, 0.0), (m, m, m), cell, fine, growth=1.3)
     return abut.Model(
         join({"block": block, "ball": ball}),
@@ -80,15 +86,42 @@ def _hertz(n: int, cell: str) -> abut.Model:
             abut.Support("block.front", y=0),
             abut.Support("ball.x0", x=0),
             abut.Support("ball.y0", y=0),
-            abut.Support("ball.z0", x=0, y=0, z=-INDENT),
+            abut.Support("ball.z0", x=0, y=0, z=-depth),
         ],
         contacts=[abut.Contact(contactor="ball.round", target="block.top")],
     )
 
 
+def _alike(cell: str) -> str:
+    """How cells are integrated in all codes: hex8 is stiffer so where metal flows than what abut takes by itself."""
+    return "reduced" if cell == "hex20" else "full"
+
+
+def _plastic(n: int, cell: str) -> abut.Model:
+    """The block yields under the ball, small strains."""
+    solids = [
+        abut.Solid("block", METAL, integration=_alike(cell)),
+        abut.Solid("ball", STEEL, integration=_alike(cell)),
+    ]
+    return replace(_hertz(n, cell), solids=solids, solve=abut.SolveOptions(steps=STEPS))
+
+
+def _rubber(n: int, cell: str) -> abut.Model:
+    """A hard ball in a block of rubber, finite strains."""
+    solids = [
+        abut.Solid("block", RUBBER, integration=_alike(cell)),
+        abut.Solid("ball", HARD, integration=_alike(cell)),
+    ]
+    model = _hertz(n, cell, DENT, DENTED)
+    return replace(model, solids=solids, kinematics="finite", solve=abut.SolveOptions(steps=STEPS))
+
+
 GEOMETRIES: dict[str, Callable[[int, str], abut.Model]] = {
     "flat": _flat, "tilted": _tilted_blocks, "friction": _rubbing, "hertz": _hertz,
+    "plastic": _plastic, "rubber": _rubber,
 }  # fmt: skip
+
+BALLS = ("hertz", "plastic", "rubber")
 
 
 def dofs(model: abut.Model) -> int:
@@ -111,7 +144,7 @@ def model(name: str, wanted: int) -> abut.Model:
     make = GEOMETRIES[geometry]
     if cell not in CELLS:
         raise ValueError(f"no cell {cell!r}; use {', '.join(CELLS)}")
-    size = (lambda n: dofs(make(n, cell))) if geometry == "hertz" else (lambda n: 3 * nodes_of_blocks(n, cell))
+    size = (lambda n: dofs(make(n, cell))) if geometry in BALLS else (lambda n: 3 * nodes_of_blocks(n, cell))
     n = _nearest(size, wanted)
     return make(n, cell)
 
@@ -130,7 +163,7 @@ def _nearest(size: Callable[[int], int], wanted: int) -> int:
 def with_options(case: abut.Model, *, linear: str, tied: bool) -> abut.Model:
     """The same model for another linear solver, or with the bodies tied."""
     contacts = [replace(c, kind="tied", friction=0.0) if tied else c for c in case.contacts]
-    return replace(case, contacts=contacts, solve=abut.SolveOptions(linear=linear))
+    return replace(case, contacts=contacts, solve=replace(case.solve, linear=linear))
 
 
 def prescribed(case: abut.Model) -> dict[int, dict[int, float]]:

@@ -90,7 +90,10 @@ def surface_of(mesh: abut.Mesh, names: str | tuple[str, ...]) -> Surface:
 
 
 def materials(case: abut.Model) -> dict[str, Any]:
-    """StructuralMaterials.json."""
+    """StructuralMaterials.json. Raises ValueError for laws that are not those of linear elasticity."""
+    for solid in case.solids:
+        if not isinstance(solid.material, abut.LinearElastic):
+            raise ValueError(f"Kratos: {type(solid.material).__name__} is not compared")
     return {
         "properties": [
             {

@@ -4,7 +4,8 @@ by hand on the stiffness alone.
 python bench/contact/run.py [--cases flat-hex8,tilted-hex8] [--dofs 10000,50000] [--cores 1,2] [--repeat 3]
     [--codes abut,abut-tied,pyamg,calculix-mortar,calculix-penalty,kratos] [--linear auto] [--limit 120]
 
-Cases are {flat,tilted,hertz}-{hex8,hex20,tet10}; all of them, of 10 000 to 1 000 000 dofs, take two to three hours.
+Cases are {flat,tilted,friction,hertz,plastic,rubber}-{hex8,hex20,tet10}; all of them, of 10 000 to 1 000 000 dofs, take
+hours.
 Every run is a new process with limits of time and memory; a code that is missing, fails or runs out of either is named in
 the table. Results go to results-bench: results.json, table.md, runs.md and, with matplotlib, times.png. docs/performance.md
 says what is measured.
@@ -30,7 +31,7 @@ import report
 from codes import CODES, Code, code
 from report import Row
 
-GEOMETRIES, CELLS = ("flat", "tilted", "friction", "hertz"), ("hex8", "hex20", "tet10")
+GEOMETRIES, CELLS = ("flat", "tilted", "friction", "hertz", "plastic", "rubber"), ("hex8", "hex20", "tet10")
 NAMES = [f"{geometry}-{cell}" for geometry in GEOMETRIES for cell in CELLS]
 MARGIN = 1.5  # times differ between runs on a busy machine: a run is left out only if it would be this much too long
 ENOUGH = 30.0  # seconds spent on one code and mesh after which no run is repeated
@@ -168,7 +169,7 @@ def arguments() -> argparse.Namespace:
         parser.error(f"no code {unknown[0]!r}; use {', '.join(CODES)}")
     wrong = [case for case in result.cases if case not in NAMES]
     if wrong:
-        parser.error(f"no case {wrong[0]!r}; use {{flat,tilted,friction,hertz}}-{{hex8,hex20,tet10}}")
+        parser.error(f"no case {wrong[0]!r}; use {{flat,tilted,friction,hertz,plastic,rubber}}-{{hex8,hex20,tet10}}")
     if result.cores[-1] > count:
         parser.error(f"--cores {result.cores[-1]}: there are {count}")
     return result
