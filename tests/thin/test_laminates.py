@@ -82,6 +82,20 @@ loads = [
     assert tip(abut.solve(load_job(path).model)) == pytest.approx(force * LENGTH**3 / (3.0 * WIDTH * d11), rel=0.01)
 
 
+def test_a_clamp_holds_a_strip_however_thin(tmp_path: Path) -> None:
+    """1:1667: the clamped edge resists the turn about itself by half of the thickness, squared 1e-7 of what resists the
+    others. q L^4 / 8 E I, of which the stiffness along the strip, (L / t)^2 times as large, leaves rounding of some 1e-3."""
+    thin = LENGTH / 1667.0
+    held = [abut.MidSupport("left", **CLAMPED)]
+    thick = abut.thicken(strip(tmp_path / "a.msh"), {"strip": abut.Shell(thin)}, held)
+    solid = abut.Solid("strip", abut.LinearElastic(E, 0.0), integration="reduced")
+    load = abut.Pressure("strip.spos", 1e-4 * thin**3)
+    model = abut.Model(
+        thick.mesh, [solid], thick.supports, [load], equations=thick.equations, couplings=thick.couplings
+    )
+    assert tip(abut.solve(model)) == pytest.approx(-1e-4 * LENGTH**4 / (8.0 * E / 12.0), rel=0.02)
+
+
 def test_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="layers: expected a number > 0"):
         abut.Shell(1.0, layers=(1.0, 0.0))

@@ -15,6 +15,7 @@ from abut.mesh.mesh import Mesh
 from abut.types import Sparse
 
 FREE = 1e-7  # resistance, relative to the strongest, below which a motion counts as free
+SUPPORTED = 1e-2  # share of that which is enough of supports: they have no facets, and plates are thin at their edges
 
 
 @dataclass(frozen=True)
@@ -89,10 +90,11 @@ def resistance_of_rows(rigid: RigidModes, rows: Sparse) -> NDArray[np.float64]:
 
 
 def free_motions(grams: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
-    """Null vectors (n_modes, n_free) of the sum of all resistances."""
+    """Null vectors (n_modes, n_free) of the sum of all resistances, of which the first is that of the supports."""
     total = sum(grams)
-    values, vectors = np.linalg.eigh(total)
-    return np.asarray(vectors[:, values < FREE * max(values.max(initial=0.0), 1e-300)])
+    values, vectors = np.linalg.eigh(total + (1.0 / SUPPORTED - 1.0) * grams[0])
+    most = max(float(np.linalg.eigvalsh(total).max(initial=0.0)), 1e-300)
+    return np.asarray(vectors[:, values < FREE * most])
 
 
 def simple_motions(rigid: RigidModes, motion: NDArray[np.float64]) -> NDArray[np.float64]:
