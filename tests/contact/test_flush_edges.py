@@ -134,6 +134,48 @@ def test_friction_turns_when_leaves_go_back(swap: bool) -> None:
         assert moved(step, model.mesh) == pytest.approx(exact.moved, rel=0.01)
 
 
+@pytest.mark.parametrize("given", [{}, {"friction": 0.3}], ids=str)
+@pytest.mark.parametrize("pressure", ["auto", "dual", "dual-P1"])
+@pytest.mark.parametrize("swap", [False, True])
+def test_at_large_sliding(pressure: str, given: dict[str, Any], swap: bool) -> None:
+    """The same, small as the motion is. What the end of the shorter leaf presses may stand up to half a facet from it: there
+    it is the larger force of a leaf so much shorter. Dual functions put it at the end where that leaf has them: 1 %."""
+    model = replace(leaves("quad8", 5, "section", swap=swap, pressure=pressure, **given), kinematics="finite")
+    solution = abut.solve(model)
+    force = between(solution)[0]
+    exact, shorter = (
+        bent_leaves([TWO[0], end], BENDING, LOAD, given.get("friction", 0.0), 1.0).forces[0]
+        for end in (SHORT, SHORT - 0.5 * SHORT / 5)
+    )
+    assert 0.99 * exact < force < (1.01 * exact if pressure != "auto" and not swap else shorter)
+    assert at_clamp(solution) == 0.0
+
+
+@pytest.mark.parametrize("pressure", ["dual", "dual-P1"])
+def test_a_plane_of_symmetry_at_large_sliding(pressure: str) -> None:
+    """A half of a crowned block that touches at its plane of symmetry alone, held there as the sections of leaves are: half
+    the force of the whole, whose function in the middle is at no edge."""
+
+    def force(left: int) -> float:
+        low = rectangle((2.0 * left, 2.0), (-2.0, 0.0), (2 * (1 - left), 2), "quad8")
+        high = rectangle((2.0 * left, 2.0), (0.0, 2.0), (2 * (1 - left), 2), "quad8")
+        x = high.points.copy()
+        x[:, 1] += (1.0 - 0.5 * x[:, 1]) * x[:, 0] ** 2 / 20.0
+        mesh = join({"low": low, "high": replace(high, points=x)})
+        held = [] if left else [abut.Support(f"{name}.left", x=0.0) for name in mesh.bodies]
+        supports = [abut.Support("low.bottom", x=0.0, y=0.0), abut.Support("high.top", x=0.0, y=-0.002)]
+        model = abut.Model(
+            mesh, [abut.Solid(name, abut.LinearElastic(1000.0, 0.3)) for name in mesh.bodies], [*supports, *held],
+            contacts=[abut.Contact(contactor="high.bottom", target="low.top", pressure=pressure)], plane="strain",
+            kinematics="finite",
+        )  # fmt: skip
+        contact = abut.solve(model).contacts[0]
+        assert contact.active == 1
+        return float(contact.force[1])
+
+    assert force(0) == pytest.approx(0.5 * force(-1), rel=1e-6)
+
+
 @pytest.mark.parametrize("given", [{}, {"pressure": "dual"}, {"friction": 0.1}, {"friction": 0.3}], ids=str)
 def test_five_leaves(given: dict[str, Any]) -> None:
     """At their ends the forces of beam theory (1 %). Four of them bend so much alike that shear, which beam theory leaves

@@ -14,7 +14,7 @@ from abut.analysis.oscillation import CLOSED, WHOLE, oscillation
 from abut.analysis.overlap import meant
 from abut.analysis.peaks import Peaks, peaks_of
 from abut.analysis.pressure_error import pressure_error
-from abut.analysis.resolution import resolution
+from abut.analysis.resolution import resolution, resolution_between_ends
 from abut.analysis.thin_give import SHARE
 from abut.contact.contactor_choice import Side
 from abut.contact.geometry import facet_sizes, full_moments, split_at_creases
@@ -34,6 +34,7 @@ TENSION = 0.05  # over the largest pressure
 COMPLEMENTARITY = 1e-6
 OSCILLATION = 0.08
 RESOLUTION = 0.4  # three facets to each side of the middle
+BETWEEN_ENDS = 0.5  # two, between edges of a body: four across
 MOMENTS = 1e-3  # on plane facets 1e-14; on curved ones the chords of edges decide which segments there are
 ERROR, NOTICED = 0.3, 0.05  # of the pressure: wrong, and worth knowing
 STANDS = 0.5  # of the largest pressure: a peak beside which others are not judged, theory (P24)
@@ -214,7 +215,9 @@ def _pressure(case: _Case) -> Iterator[Check]:
         pressure=matters)  # fmt: skip
     counts = largest > LESSER * case.around.beside
     facets = resolution(pair, average, support, largest)
-    yield _resolved(case, facets if counts else 0.0)
+    yield _resolved(
+        case, facets if counts else 0.0, resolution_between_ends(pair, average, support, largest) if counts else 0.0
+    )
     yield _of_largest(case, seen, counts)
     estimate = pressure_error(pair, pressure, support, largest, case.around.stress, seen.carried, average)
     off = estimate * largest / matters
@@ -228,9 +231,14 @@ def _pressure(case: _Case) -> Iterator[Check]:
         unknown="the target has points without a normal" if np.isnan(edges) else "")  # fmt: skip
 
 
-def _resolved(case: _Case, facets: float) -> Check:
-    """Thin parts touch along lines: what they press there with is a force, which no facets show as a pressure."""
+def _resolved(case: _Case, facets: float, between_ends: float) -> Check:
+    """Thin parts touch along lines: what they press there with is a force, which no facets show as a pressure. Neither do a
+    few facets between a body's edges, though its force may be right."""
     meaning = "one over the number of facets from the edge of contact to its middle, at the end"
+    if case.around.bends is None and facets <= RESOLUTION and between_ends > BETWEEN_ENDS:
+        return Check(case.pair.contact.name, "resolution", between_ends, 1.0,
+            f"{meaning}: between the ends of a body, where pressure rises, its course is unknown", last=True,
+            notice=BETWEEN_ENDS)  # fmt: skip
     if case.around.bends is None:
         return case.check("resolution", facets, RESOLUTION, meaning, last=True)
     return Check(case.pair.contact.name, "resolution", facets, 1.0,

@@ -64,5 +64,9 @@ class FlushEdges:
 
     def facets(self, space: PressureSpace, closed: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Facets (n_facets,) of those functions."""
-        acts = abs(space.plain) @ self.alone(space, closed).astype(float)
-        return np.asarray(acts.reshape(self.n_facets, MAX_FACET_NODES).any(axis=1))
+        return self.touched(space, self.alone(space, closed))
+
+    def touched(self, space: PressureSpace, some: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Facets (n_facets,) of ``some`` functions (n_functions,)."""
+        acts = abs(space.plain) @ some.astype(float)
+        return np.asarray((acts > 0.0).reshape(self.n_facets, MAX_FACET_NODES).any(axis=1))

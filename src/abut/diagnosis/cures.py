@@ -8,8 +8,10 @@ import numpy as np
 
 from abut.cells import CELLS
 from abut.contact.contactor_choice import FINER, Choice
+from abut.contact.coupling import surface_degree
 from abut.contact.geometry import facet_sizes
 from abut.contact.sides import words
+from abut.diagnosis.common_ends import presses_at_common_end
 from abut.diagnosis.contactor import swap
 from abut.model import LAWS, METHODS, Contact
 from abut.model.locking import locking
@@ -154,7 +156,14 @@ def _oscillation(contact: Contact, result: ContactResult, sides: str) -> str:
 
 
 def _resolution(contact: Contact, result: ContactResult, sides: str) -> str:
-    return f"refine {words(contact.contactor)} where it touches: contact needs three facets to each side of its middle"
+    text = f"refine {words(contact.contactor)} where it touches: contact needs three facets to each side of its middle"
+    if surface_degree(result.contactor) == 1 and presses_at_common_end(result):
+        text += (
+            "; it presses alone at an end common to both sides: where that is a clamp up to which they lie on each other, "
+            "straight cells that bend cut into each other beside it and press there falsely: take cells of second order, "
+            "or cells half as long on both sides"
+        )
+    return text
 
 
 def _pressure_error(contact: Contact, result: ContactResult, sides: str) -> str:

@@ -19,6 +19,7 @@ from abut.nonlinear.pace import Pace
 from abut.nonlinear.semismooth import Step, largest_of, solve_finite
 from abut.nonlinear.settings import DEFAULT, Settings
 from abut.problem.balance import Balance
+from abut.problem.edge_trials import on_trial, refuses, with_refused
 from abut.problem.problem import ContactProblem
 from abut.problem.stabilising import drag_of, with_drag
 from abut.solution import Iteration
@@ -49,20 +50,23 @@ class Setting:
         increment = Increment(self.number, before.largest, self.settings)
         step = Step(problem, begin, frame, self.solver, increment, self.limit, self.observe, careful=careful, drag=drag)
         found = solve_finite(step, guess, time)
-        spreads = self.settings.steps.solutions if frame.wet else 0
-        for done in range(AGAIN + spreads):
+        earlier = frame, found.state
+        for done in range(AGAIN + self.settings.steps.solutions):
             frame = step.frame
-            if found.converged:
+            if found.converged and (done < AGAIN or frame.wet or on_trial(frame)):
                 frame = problem.settled(step.before, step.frame, replace(found.state, time=time))
-                frame = frame if done < AGAIN else step.frame.with_wet(frame.wet)
+                frame = frame if done < AGAIN else with_refused(step.frame, frame).with_wet(frame.wet)
             if frame is step.frame:
                 break
-            begin, guess = (problem.handed(each, step.frame, frame) for each in (step.before, found.state))
+            refused, last = refuses(step.frame, frame), (step.frame, found.state)
+            begin = problem.handed(step.before, step.frame, frame)
+            was, state = earlier if refused else last  # what was refused has moved all off
+            guess = problem.handed(state, was, frame)
             again = replace(step, before=begin, frame=frame, limit=step.limit + len(step.done))
             inside = solve_finite(again, guess, time)
-            if not inside.converged and frame.wet is step.frame.wet:
+            if not (inside.converged or refused) and frame.wet is step.frame.wet:
                 break
-            step, found = again, inside
+            step, found, earlier = again, inside, last
         if found.converged and _spreads_on(step, found, time):
             step.failed, found = UNSTEADY, replace(found, converged=False)
         if found.converged:

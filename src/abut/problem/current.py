@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -14,10 +15,11 @@ from abut.contact.block_rows import added_up, block_rows, in_place, weights_of_r
 from abut.contact.corners import at_corners, edge_on
 from abut.contact.coupling import Coupling, CouplingOptions, couple, surface_degree
 from abut.contact.coupling_tangent import CouplingTangent, Differentiate, differentiated
+from abut.contact.flush_edges import FlushEdges
 from abut.contact.geometry import Smoothing, facet_sizes, full_moments, nodal_normals
 from abut.contact.moving_normals import MovingNormals, NormalPattern, normal_pattern
 from abut.contact.pressure_space import DUAL_P1, PressureSpace
-from abut.contact.rim import Rim, goes_on
+from abut.contact.rim import Rim, goes_on, rim
 from abut.contact.slip_points import Past, SlipPoints
 from abut.mesh.surface import Surface
 from abut.problem.adjusted_gaps import BARELY, with_adjusted
@@ -25,11 +27,13 @@ from abut.problem.current_friction import Rubbing, Tangents
 from abut.problem.current_slips import Seen, contact_load, either, with_friction
 from abut.problem.dual_functions import Mixed, Mixture, dual_share, inner_now, mixed_part
 from abut.problem.edge_functions import Following, led
+from abut.problem.edge_trials import DUAL, INNER, TRIED, anew, trials
 from abut.problem.first_touch import Sides, apart
 from abut.problem.frame import PairFrame
 from abut.problem.gap_fit import MovedSides, Sight, fit_change
 from abut.problem.kinematics import ContactNow, Placed
 from abut.problem.pair import TOUCHING, Pair
+from abut.problem.sample_gaps import facets_apart
 from abut.problem.tangent_frames import Frames, anchors, tangents_2d
 from abut.solution.state import ContactHistory
 from abut.types import Sparse
@@ -56,24 +60,47 @@ class Current:
     def frame(self, known: ContactHistory, before: Placed, near: Placed | None) -> PairFrame:
         """As in ``Kinematics``: functions and fits that belong to ``before``, theory (P9), (G15), unless those of the last
         step serve; functions follow others by where the step ends; points for slips that are covered there only."""
-        frame = PairFrame(known.past, known.inner, known.following, known.fit)
-        frame = self._with_following(self._with_functions(frame, before), near or before)
+        frame = PairFrame(known.past, anew(known.inner), known.following, known.fit)
+        frame = self._with_following(self._with_functions(frame, before, self._inner), near or before)
         return frame if near is None else self._with_late(frame, before, near, np.ones_like(near.closed))
 
     def settled(self, frame: PairFrame, before: Placed, end: Placed) -> PairFrame:
         """As in ``Kinematics``."""
-        late = self._with_late(self._with_functions(frame, end), before, end, end.closed)
+        late = self._with_late(self._with_functions(frame, end, self._tried), before, end, end.closed)
         return self._with_following(late, end, settled=True)
 
-    def _with_functions(self, frame: PairFrame, now: Placed) -> PairFrame:
-        """With the ordinary functions of "dual-P1" inside what is closed there, and with fits; the same object where they
-        are there already, fits nearly."""
-        inner = self.inner(now.displacement, now.closed) if self.pair.space.name == DUAL_P1 else None
+    def _with_functions(
+        self, frame: PairFrame, now: Placed, functions: Callable[[Array, Placed], Array]
+    ) -> PairFrame:  # fmt: skip
+        """With the functions that belong there, from those known, and with fits; the same object where they are there
+        already, fits nearly."""
         fit = self.fit(now.displacement) if self.fits else None
-        known = np.zeros(len(self.pair.contactor)) if frame.inner is None else frame.inner
-        if (inner is None or np.array_equal(known, inner)) and self._fitted(frame.fit, fit, now):
+        known = np.full(len(self.pair.contactor), DUAL) if frame.inner is None else frame.inner
+        inner = known if self.pair.space.ordinary else functions(known, now)
+        same = np.array_equal(known == INNER, inner == INNER) and self._fitted(frame.fit, fit, now)
+        if same and np.array_equal(known, inner):
             return frame
-        return replace(frame, inner=inner, fit=fit)
+        return replace(frame, inner=inner, fit=frame.fit if same else fit)
+
+    def _inner(self, known: Array, now: Placed) -> Array:
+        """With the ordinary functions of "dual-P1" inside what is closed now, both (n_facets,)."""
+        if self.pair.space.name != DUAL_P1:
+            return known
+        inner = self.inner(now.displacement, now.closed)
+        return np.where(inner > 0.0, INNER, np.where(known == INNER, DUAL, known))
+
+    def _tried(self, known: Array, end: Placed) -> Array:
+        """The same at the end of a step, with those that are tried, or refused, at edges where both sides end."""
+        known, closed = self._inner(known, end), end.closed[self.pair.normal]
+        contactor, target = self.surfaces(end.displacement)
+        border = rim(contactor)
+        flush = FlushEdges.of(contactor, border, ~goes_on(contactor, border, target, NEAR * self._facet))
+        apart = np.ones(len(contactor), dtype=bool)
+        if (known == TRIED).any():
+            at = self.shown(end.displacement).gap_samples
+            assert at is not None
+            apart = facets_apart(at, at.gap + end.offset, len(contactor))
+        return trials(self.pair.space, flush, known, closed, apart)
 
     def _fitted(self, known: Array | None, fit: Array | None, now: Placed) -> bool:
         """Whether a known fit serves where another belongs: of its size and of the largest pressure, at multipliers that

@@ -44,12 +44,12 @@ class Mixture:
         functions; one not covered at all: ordinary ones. A dual function is negative on a part of its facet, which must not
         be all that is covered; and the gap at a node, which it gives, may be that beyond the edge of the target.
 
-        inner: (n_facets,) not zero where functions are the ordinary ones in this step; None for nowhere."""
+        inner: (n_facets,) above zero where functions are the ordinary ones in this step; None for nowhere."""
         n = len(contactor)
         covered, area = coupling.weight.reshape(n, -1).sum(axis=1), full_moments(contactor, 0)[:, 0]
         least = _least_around(contactor, covered / area)
         share = dual_share((covered / area)[least])
-        return cls(share if inner is None else np.where(inner == 0.0, share, 0.0), least, covered, area)
+        return cls(share if inner is None else np.where(inner > 0.0, 0.0, share), least, covered, area)
 
     def space(self, dual: PressureSpace) -> PressureSpace:
         """The space of these functions, of that of the dual ones."""

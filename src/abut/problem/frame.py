@@ -18,10 +18,10 @@ class PairFrame:
     """Of one contact pair. At small displacements, with friction: slipped: (n_tangential,) weighted tangential jumps from
     which slip counts, theory (R3); approached: (n_tangential,) what of them is no slip, theory (R4).
 
-    At current positions: past: from where slip counts, None without friction; inner: (n_facets,) not zero where functions
-    of a dual space are the ordinary ones, None for nowhere, theory (P9); following: (n_functions,) which one each has its
-    pressure from, as in ``Following``, None for itself; fit: (9 n_facets,) what is added to the gaps, or None,
-    theory (G15)."""
+    At current positions: past: from where slip counts, None without friction; inner: (n_facets,) above zero where functions
+    of a dual space are the ordinary ones, None for nowhere, theory (P9), as named in ``edge_trials``; following:
+    (n_functions,) which one each has its pressure from, as in ``Following``, None for itself; fit: (9 n_facets,) what is
+    added to the gaps, or None, theory (G15)."""
 
     past: Past | None = None
     inner: Array | None = None

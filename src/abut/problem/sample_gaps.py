@@ -28,9 +28,11 @@ def apart(pair: Pair, displacement: NDArray[np.float64], offset: float) -> NDArr
     """Facets (n_facets,) at all points of which the sides are apart, or touch. displacement: (n_points, dim); offset: added
     to all gaps, a length."""
     at, n = pair.coupling.gap_samples, len(pair.contactor)
-    if at is None:
-        return np.zeros(n, dtype=bool)
-    gap = gaps_at(pair, at, displacement)[0] + offset
+    return np.zeros(n, dtype=bool) if at is None else facets_apart(at, gaps_at(pair, at, displacement)[0] + offset, n)
+
+
+def facets_apart(at: GapSamples, gap: NDArray[np.float64], n: int) -> NDArray[np.bool_]:
+    """The same of n facets by gaps (n_samples,) at samples."""
     least, most = np.full(n, np.inf), np.zeros(n)
     np.minimum.at(least, at.facet, gap)
     np.maximum.at(most, at.facet, gap)
