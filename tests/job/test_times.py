@@ -103,3 +103,13 @@ def test_names_of_steps_are_times(tmp_path: Path) -> None:
     (tmp_path / "job.toml").write_text(text.replace("[[steps]]", "[solve]\nend = 3\n[[steps]]", 1), encoding="utf-8")
     with pytest.raises(abut.InputError, match=r"solve.end: the time at the end is that of all steps together"):
         load_job(tmp_path / "job.toml")
+
+
+@pytest.mark.parametrize(
+    ("name", "why"), [("press", "is used twice"), ("start", "stands for the beginning of the time")]
+)
+def test_a_name_stands_for_one_time(name: str, why: str, tmp_path: Path) -> None:
+    steps = f'[[steps]]\nname = "press"\n[[steps]]\nname = "{name}"\n'
+    (tmp_path / "job.toml").write_text(JOB.format(*SHARES).replace("times = [0.25, 0.5, 1.0]", "") + steps)
+    with pytest.raises(abut.InputError, match=rf"steps\[1\].name: '{name}' {why}; give each step a name of its own"):
+        load_job(tmp_path / "job.toml")

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from abut.contact.geometry import area_vectors, facet_sizes
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
+from abut.model import Model
 from abut.problem.pair import Pair
 
 PLANE = 1e-6  # sine of an angle between facets of one plane
@@ -63,3 +64,11 @@ def _turn(points: Array, moved: Array) -> float:
         return float(abs((x[:, 0] * u[:, 1] - x[:, 1] * u[:, 0]).sum()) / max((x**2).sum(), 1e-300))
     inertia = (x**2).sum() * np.eye(3) - x.T @ x
     return float(np.linalg.norm(np.linalg.lstsq(inertia, np.cross(x, u).sum(axis=0), rcond=1e-9)[0]))
+
+
+def turned(model: Model, displacement: Array) -> float:
+    """Largest turn of a body, where they are taken for small, else 0; rigid ones may turn by any where contact follows
+    them."""
+    if not model.small_strains:
+        return 0.0
+    return largest_turn(model.mesh, displacement, model.materials if model.finite else model.mesh.bodies)

@@ -17,7 +17,7 @@ from abut.analysis.finite_energy import FiniteActing, finite_energy
 from abut.analysis.flow import flow, remembered
 from abut.analysis.interpolation_error import Mended
 from abut.analysis.known_stress import known_stress
-from abut.analysis.moved import largest_turn, slid
+from abut.analysis.moved import slid, turned
 from abut.analysis.node_fields import node_fields
 from abut.analysis.overlap import covered_elsewhere, overlaps
 from abut.analysis.penetrations import penetration_results
@@ -25,6 +25,7 @@ from abut.analysis.preloads import preload_results
 from abut.analysis.stress_error import stress_error
 from abut.analysis.surface_stress import loaded_points, normal_stress
 from abut.analysis.thin_give import bends
+from abut.analysis.volume_change import volume_change
 from abut.bodies.averages import averages
 from abut.bodies.recovery import at_points, recovered
 from abut.cells import MAX_FACET_NODES
@@ -126,10 +127,7 @@ def step_result(
         displacement=end.nodal,
         stress=stress,
         reaction=(end.reaction + end.sprung).reshape(-1, model.dim).sum(axis=0),
-        reactions={
-            on: by_supports[_with_bodies(model.mesh.nodes_of(on), constraints.bodies)].sum(axis=0)
-            for on in dict.fromkeys([*(s.on for s in model.supports), *(hold.on for hold in model.holds)])
-        },
+        reactions=_reactions(end, by_supports),
         load=assembled.loaded.resultant @ balance.factors + end.following.reshape(-1, model.dim).sum(axis=0),
         contacts=contacts,
         axisymmetric=model.mesh.axisymmetric,
@@ -145,9 +143,10 @@ def step_result(
         neutral=springs.noise,
         strained=strained,
         landed=_landed(state),
-        turn=_turn(model, end.nodal),
+        turn=turned(model, end.nodal),
         energy=work if strained else None,
         stress_error=stress_error(solids, end.nodal, own, values, contacts) if strained else None,
+        volume_change=volume_change(solids, end.nodal, own, change) if shown is None and strained else None,
         remembered={**remembered(solids, end.motion.history), **node_fields(problem, end.motion, state)},
         penetrations=penetration_results(problem, state, end.displacement),
         flow=end.flow,
@@ -156,6 +155,12 @@ def step_result(
         nodal_reaction=end.reaction.reshape(-1, model.dim),
     )
     return step, acting
+
+
+def _reactions(end: _End, forces: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+    model, bodies = end.problem.model, end.problem.constraints.bodies
+    names = dict.fromkeys([*(support.on for support in model.supports), *(hold.on for hold in model.holds)])
+    return {on: forces[_with_bodies(model.mesh.nodes_of(on), bodies)].sum(axis=0) for on in names}
 
 
 def _end(assembled: Assembled, attempt: Attempt) -> _End:
@@ -244,13 +249,6 @@ def _finite_energy(
         drag_of(state) if is_dragged(state) else None, end.flow.work if end.flow else 0.0, state.time,
     )  # fmt: skip
     return now, finite_energy(problem, acted, now, balance.diagonal, contacts, _largest_size(steps))
-
-
-def _turn(model: Model, displacement: NDArray[np.float64]) -> float:
-    """Largest turn of a body, where they are taken for small; rigid ones may turn by any where contact follows them."""
-    if not model.small_strains:
-        return 0.0
-    return largest_turn(model.mesh, displacement, model.materials if model.finite else model.mesh.bodies)
 
 
 def _landed(state: State) -> tuple[float, float] | None:

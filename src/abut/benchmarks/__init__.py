@@ -23,9 +23,11 @@ from abut.benchmarks import (
     hertz,
     holds,
     incompressible,
+    joined,
     layers,
     loads,
     local_axes,
+    modes,
     onset,
     patch,
     penetration,
@@ -34,6 +36,7 @@ from abut.benchmarks import (
     punches,
     removals,
     stability,
+    started,
     subsurface,
 )
 from abut.benchmarks.record import Benchmark, Outcome, Reference, run
@@ -74,6 +77,9 @@ BENCHMARKS: dict[str, Benchmark] = {
         *local_axes.BENCHMARKS,
         *holds.BENCHMARKS,
         *removals.BENCHMARKS,
+        *started.BENCHMARKS,
+        *joined.BENCHMARKS,
+        *modes.BENCHMARKS,
         *penetration.BENCHMARKS,
     )
 }

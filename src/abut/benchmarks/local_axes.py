@@ -1,4 +1,4 @@
-"""Supports and loads in local axes: a sector of a hollow ball, cut at any angle, and a shaft that is twisted."""
+"""Supports, loads and probes in local axes: a sector of a hollow ball, cut at any angle, and a shaft that is twisted."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from abut.axes import Axes
 from abut.benchmarks.record import Benchmark, Reference
 from abut.materials.elastic import LinearElastic
 from abut.mesh.make import box, cylinder, join
-from abut.model import Model, Solid, Support, Traction
+from abut.model import Model, Probe, Solid, Support, Traction
 from abut.solution import Solution
 from abut.types import Array
 
@@ -36,7 +36,27 @@ def _sector(level: int) -> Model:
         [Solid("ball", LinearElastic(YOUNG, POISSON))],
         [Support("all", y=0, z=0, axes=axes)],
         [Traction("ball.left", (PRESSURE, 0.0, 0.0), axes=axes)],
+        probes=[Probe("wall", line=(_at(INNER), _at(OUTER)), points=3, axes=axes)],
     )
+
+
+def _at(radius: float) -> tuple[float, ...]:
+    """A point inside the sector."""
+    return tuple(_in_ball(np.array([[radius, 0.45, 0.1]]))[0])
+
+
+def _read(solution: Solution) -> dict[str, float]:
+    """In the middle of the wall, radial, around and toward the pole."""
+    values = solution.probes[0].values
+    moved, stress = values["displacement"][1], values["stress"][1]
+    return {
+        "radial displacement": float(moved[0]),
+        "displacement across": float(np.hypot(*moved[1:])),
+        "radial stress": float(stress[0]),
+        "stress around": float(stress[1]),
+        "stress toward the pole": float(stress[2]),
+        "shear": float(np.abs(stress[3:]).max()),
+    }
 
 
 def _growth(solution: Solution) -> dict[str, float]:
@@ -52,6 +72,26 @@ def _lame(radius: float) -> float:
     a3, b3 = INNER**3, OUTER**3
     along = (1.0 - 2.0 * POISSON) * radius + (1.0 + POISSON) * b3 / (2.0 * radius**2)
     return PRESSURE * a3 / (YOUNG * (b3 - a3)) * along
+
+
+def stresses(radius: float) -> tuple[float, float]:
+    """Radial, and at right angles to that."""
+    a3, b3, r3 = INNER**3, OUTER**3, radius**3
+    return PRESSURE * a3 * (r3 - b3) / (r3 * (b3 - a3)), PRESSURE * a3 * (2.0 * r3 + b3) / (2.0 * r3 * (b3 - a3))
+
+
+def _read_wanted() -> dict[str, Reference]:
+    middle = 0.5 * (INNER + OUTER)
+    radial, around = stresses(middle)
+    source, near = "Lame's hollow sphere", "recovered stresses of four quadratic cells through the wall"
+    return {
+        "radial displacement": Reference(_lame(middle), 5e-4, source, CURVED),
+        "displacement across": Reference(0.0, 1e-5 * _lame(middle), source, "supports hold all nodes across"),
+        "radial stress": Reference(radial, 1e-2, source, near),
+        "stress around": Reference(around, 1e-2, source, near),
+        "stress toward the pole": Reference(around, 1e-2, source, near),
+        "shear": Reference(0.0, 1e-2 * PRESSURE, source, near),
+    }
 
 
 def _shaft(level: int) -> Model:
@@ -76,8 +116,8 @@ def _twist(solution: Solution) -> dict[str, float]:
     return {"twist of the end": float(turn.mean())}
 
 
-TWIST = SHEAR / RADIUS * LENGTH * 2.0 * (1.0 + POISSON) / YOUNG
 CURVED = "quadratic cells, four through the wall"
+TWIST = SHEAR / RADIUS * LENGTH * 2.0 * (1.0 + POISSON) / YOUNG
 ROUND = "facets of second order on the round face"
 BENCHMARKS = (
     Benchmark(
@@ -86,6 +126,9 @@ BENCHMARKS = (
             f"growth of the {name}": Reference(_lame(radius), 5e-4, "Lame's hollow sphere", CURVED)
             for name, radius in (("bore", INNER), ("outside", OUTER))
         },
+    ),
+    Benchmark(
+        "ball-probe", "the same, read by a probe in spherical axes", _sector, _read, _read_wanted(),
     ),
     Benchmark(
         "shaft-twist", "shaft twisted by tractions around its axis", _shaft, _twist,

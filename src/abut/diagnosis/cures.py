@@ -79,6 +79,8 @@ MODEL = {
     "plastic strain": 'with small kinematics: kinematics = "finite"; with finite: check loads and yield stress, strains of '
     "this size stretch cells to more than twice their length",
     "limit load": GO_ON,
+    "volume change": "smaller cells where it is, or mixed ones (quad9, tri6, hex27, tet10: integration = 'mixed'); in a law "
+    "of your own check that stresses have the bulk modulus of its `linear`",
     "preload": "what is loaded at the section of a preload carries none of it: tighten before the loads come, in steps of "
     "their own, and let the section cut all of one body",
     "loose bolts": "tighten the bolt more, or load it less: a bolt carries no compression",

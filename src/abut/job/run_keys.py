@@ -59,5 +59,7 @@ RUN: dict[str, dict[str, str]] = {
         "contact": "name of the contact whose pressure and gap are read; left out: the one that the probe lies on",
         "body": "name of the body that is read where points lie on several; left out: the first in the mesh",
         "steps": "steps in its table: all, last, n for every n-th, or a list of numbers; the last one always is",
+        "axes": "local axes at each undeformed point: x, y and z of displacement, stress, reaction and plastic strain are "
+        "then along their first, second and third direction",
     },
 }

@@ -225,6 +225,7 @@ class ProbeTable(Table):
     contact: str | None = None
     body: str | None = None
     steps: int | list[int] | Annotated[str, OneOf(STEPS)] = "all"
+    axes: AxesTable | None = None
 
 
 class JobFile(Table):

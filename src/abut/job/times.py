@@ -18,14 +18,18 @@ Change = Callable[[Any], Any]
 
 def with_shares(data: Json) -> Json:
     """Tables of a job with all times as shares of the end: that of ``solve``, or of all ``steps`` together, names of which
-    stand for their ends. What is no time stays, and is told later. Raises InputError for a name that no step has."""
+    stand for their ends. What is no time stays, and is told later. Raises InputError for a name that no step has, or that
+    several have."""
     steps, solve = data.get("steps"), data.get("solve", {})
     if not isinstance(solve, Mapping) or (steps and not _sound(steps)):
         return data
     named, last = {START: 0.0}, 0.0
-    for step in steps or ():
+    for i, step in enumerate(steps or ()):
         last += step.get("period", 1.0)
-        named[step["name"]] = last
+        if (name := step["name"]) in named:
+            taken = "stands for the beginning of the time" if name == START else "is used twice"
+            raise InputError(f"steps[{i}].name: {name!r} {taken}; give each step a name of its own")
+        named[name] = last
     if steps and "end" in solve:
         raise InputError("solve.end: the time at the end is that of all steps together; leave it out")
     end = last if steps else solve.get("end", 1.0)

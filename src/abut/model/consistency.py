@@ -35,12 +35,13 @@ def check_supports(mesh: Mesh, supports: Sequence[Support]) -> None:
             checks.known(support.on, [*mesh.surfaces, *mesh.node_sets], f"supports[{i}].on", "surface or node set")
         else:
             checks.known(support.on, mesh.surfaces, f"supports[{i}].on", "surface (normal needs facets)")
-        _check_axes(mesh, support.axes, f"supports[{i}]")
+        check_axes(mesh, support.axes, f"supports[{i}]")
         if mesh.dim == 2 and support.z is not None:
             raise InputError(f"supports[{i}].z: the model is 2D; leave z out")
 
 
-def _check_axes(mesh: Mesh, axes: Axes | None, where: str) -> None:
+def check_axes(mesh: Mesh, axes: Axes | None, where: str) -> None:
+    """Raise InputError, beginning with ``where``, for local axes that do not go with the mesh."""
     if axes is None:
         return
     axes.check(mesh.dim, where)
@@ -76,7 +77,7 @@ def check_loads(mesh: Mesh, loads: Sequence[Load], rigid: Collection[str], coupl
                 )
         else:
             _check_place(mesh, load, f"loads[{i}].on")
-            _check_axes(mesh, getattr(load, "axes", None), f"loads[{i}]")
+            check_axes(mesh, getattr(load, "axes", None), f"loads[{i}]")
             if isinstance(load, Temperature) and load.on in rigid and load.on not in mesh.node_sets:
                 raise InputError(f"loads[{i}].on: '{load.on}' is rigid and does not expand; take the temperature out")
         if isinstance(load, (Pressure, Temperature)) or callable(load.value):

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from abut import checks
+from abut.axes import Axes
 from abut.errors import InputError, nearest
 from abut.mesh.mesh import Mesh
+from abut.model.consistency import check_axes
 from abut.model.step_choice import StepChoice, check_steps
 
 YIELDED = ("plastic-strain", "equivalent-plastic-strain")  # where a body may yield
@@ -53,6 +55,9 @@ class Probe:
     steps : str, int or sequence of int
         Of the load steps in its table: "all", "last", n for every n-th, or a list of numbers; the last step is always
         among them.
+    axes : Axes, optional
+        Local axes at each point, undeformed: x, y and z of displacement, stress, reaction and plastic strain are then
+        along their first, second and third direction.
 
     Raises
     ------
@@ -76,6 +81,7 @@ class Probe:
     contact: str | None = None
     body: str | None = None
     steps: StepChoice = "all"
+    axes: Axes | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not self.name.strip():
@@ -95,6 +101,8 @@ class Probe:
             if self.contact is not None and not set(self.of) & set(ON_CONTACTS):
                 raise InputError(f"{where}: contact is for pressure and gap; leave it out, or add them to 'of'")
         check_steps(self.steps, f"{where}: steps")
+        if self.axes is not None:
+            checks.instance(self.axes, Axes, f"{where}: axes", "local axes (abut.Axes)")
         if self.of is not None and REACTION in self.of and self.on is None:
             raise InputError(
                 f"{where}: {REACTION} is the force on nodes; give on (a node set, surface or body), or take it out of 'of'"
@@ -115,11 +123,12 @@ class Probe:
     @property
     def place(self) -> str:
         """Where it is, in words."""
+        along = "" if self.axes is None else f", in {self.axes.kind} axes"
         if self.at is not None:
-            return f"at {_words(self.at)}"
+            return f"at {_words(self.at)}{along}"
         if self.line is not None:
-            return f"{self.points or POINTS} points from {_words(self.line[0])} to {_words(self.line[1])}"
-        return f"nodes of {self.on}"
+            return f"{self.points or POINTS} points from {_words(self.line[0])} to {_words(self.line[1])}{along}"
+        return f"nodes of {self.on}{along}"
 
 
 def check_probes(probes: Sequence[Probe], mesh: Mesh, contacts: Collection[str]) -> None:
@@ -132,6 +141,7 @@ def check_probes(probes: Sequence[Probe], mesh: Mesh, contacts: Collection[str])
             for point in points:
                 if point is not None and len(point) != mesh.dim:
                     raise InputError(f"{where}.{key}: expected {mesh.dim} numbers for a point, got {len(point)}")
+        check_axes(mesh, probe.axes, where)
         _known(probe.on, [*mesh.surfaces, *mesh.node_sets, *mesh.bodies], f"{where}.on", "surface, node set or body")
         _known(probe.body, mesh.bodies, f"{where}.body", "body")
         _known(probe.contact, contacts, f"{where}.contact", "contact")

@@ -5,11 +5,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.materials.directions import frames, turned
 from abut.materials.invariants import max_shear, principal, von_mises
 from abut.model.probe import MAX_SHEAR, PRINCIPAL, REACTION, YIELDED
 from abut.probing.place import OnSurface, Place
 from abut.probing.sides import CONTACTOR
 from abut.solution import ContactResult, ProbeResult, Step
+from abut.types import Array
+
+PLASTIC = YIELDED[0]
 
 
 def read(place: Place, step: Step) -> ProbeResult:
@@ -35,6 +39,8 @@ def read(place: Place, step: Step) -> ProbeResult:
                 at_points = step.remembered[name.replace("-", "_")]
                 every[name] = np.asarray(place.weights @ at_points.reshape(len(step.displacement), -1))
                 every[name] = every[name].ravel() if every[name].shape[1] == 1 else every[name]
+        if place.probe.axes is not None:
+            every = _local(every, frames(place.probe.axes, place.points))
         values |= {name.replace("-", "_"): value for name, value in every.items() if name in place.of}
     if place.surface is not None:
         contact = step.contacts[place.surface.contact]
@@ -42,6 +48,19 @@ def read(place: Place, step: Step) -> ProbeResult:
             if name in place.of:
                 values[name] = _on_facets(place.surface, _table(place.surface, contact, name), len(place.points))
     return ProbeResult(place.probe.name, place.points, place.distance, place.nodes, values)
+
+
+def _local(values: dict[str, Array], frame: Array) -> dict[str, Array]:
+    """Vectors and tensors (n, 6) by their components along the directions of frames (n, 3, 3), the rest as it is."""
+    result = dict(values)
+    for name in ("displacement", REACTION):
+        if name in values:
+            dim = values[name].shape[1]
+            result[name] = np.einsum("nkd,nd->nk", frame[:, :dim, :dim], values[name])
+    result["stress"] = np.einsum("nba,nb->na", turned(frame.transpose(0, 2, 1)), values["stress"])
+    if PLASTIC in values:
+        result[PLASTIC] = np.einsum("nab,nb->na", turned(frame), values[PLASTIC])
+    return result
 
 
 def _table(surface: OnSurface, contact: ContactResult, name: str) -> NDArray[np.float64]:

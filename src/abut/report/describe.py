@@ -18,6 +18,7 @@ _GROUPS = (
     ("Supports", "supports"),
     ("Loads", "loads"),
     ("Rigid bodies", "rigid"),
+    ("Rotations", "rotations"),
     ("Couplings", "couplings"),
     ("Preloads", "preloads"),
     ("Springs", "springs"),
@@ -26,6 +27,8 @@ _GROUPS = (
     ("Pressure penetration", "penetrations"),
     ("Equations", "equations"),
     ("Contacts", "contacts"),
+    ("Probes", "probes"),
+    ("Frequencies and buckling", "modes"),
 )
 _SUBJECT = ("on", "body", "name")  # the first of these that a record has stands in a column of its own
 

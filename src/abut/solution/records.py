@@ -29,6 +29,7 @@ from abut.solution.progress import Iteration
 from abut.solution.run_checks import run_checks
 from abut.solution.state import State
 from abut.solution.stress_error import StressError
+from abut.solution.volume_change import VolumeChange
 
 BALANCE = 1e-9  # limit of the model's balance of forces
 ROUNDED = 1e-6  # the same at most, where a stiff part that moves with a soft one leaves no more digits
@@ -124,6 +125,7 @@ class Step:
         default_factory=dict
     )  # by materials, at points: (n_points, ...); and fields beside displacements
     flow: Flow | None = None  # None where no material yields
+    volume_change: VolumeChange | None = None  # None where no body keeps its volume
     preloads: Mapping[str, PreloadResult] = field(default_factory=dict)
     springs: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)  # force (dim,) on what each is on
     penetrations: Mapping[str, PenetrationResult] = field(default_factory=dict)
@@ -318,6 +320,8 @@ class Solution:
                                    "the work of all nodal forces by size"))  # fmt: skip
             if step.flow is not None:
                 model += step.flow.checks(self.model.finite, bool(self.model.loads))
+            if step.volume_change is not None:
+                model.append(step.volume_change.check)
             if step.stress_error is not None:
                 model.append(Check("", "stress error", step.stress_error.largest, STRESS_ERROR,
                                    step.stress_error.meaning(loaded),

@@ -1,0 +1,131 @@
+"""Jobs that start from another one: a bar that has yielded is let go, bars that press each other are drawn apart."""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from abut.analysis import solve
+from abut.benchmarks.record import Benchmark, Reference
+from abut.errors import AbutError
+from abut.materials.elastic import LinearElastic
+from abut.materials.plastic import Plastic
+from abut.mesh.make import box, join, rectangle
+from abut.model import Amplitude, Contact, Model, Solid, SolveOptions, Support, Traction
+from abut.output.restart import description, save_step
+from abut.output.start import load_start
+from abut.solution import Saved, Solution
+
+YOUNG, YIELD, HARDENING, PULL, LENGTH = 200e3, 200.0, 1e4, 300.0, 2.0
+SOFT, OVERLAP, DRAWN = 1000.0, 0.04, 0.03  # two bars in a row, each of the length above, without lateral contraction
+SHARE = 0.5  # of the second job's time, at which the first one's steps end
+RAMP = Amplitude(((0.0, 0.0), (1.0, 1.0)))
+
+
+def _let_go(level: int) -> Model:
+    """Held without hindering contraction, drawn beyond yield up to the first job's end, unloaded then."""
+    n = 2**level
+    mesh = join({"bar": box((0.0, LENGTH), (0.0, 1.0), (0.0, 1.0), (2 * n, n, n), "hex8")})
+    return Model(
+        mesh,
+        [Solid("bar", Plastic(YOUNG, 0.3, YIELD, HARDENING))],
+        [Support("bar.left", x=0), Support("bar.front", y=0), Support("bar.bottom", z=0)],
+        [Traction("bar.right", (PULL, 0.0, 0.0), Amplitude(((0.0, 0.0), (SHARE, 1.0), (1.0, 0.0))))],
+        solve=SolveOptions(times=(0.25, SHARE, 0.75, 1.0)),
+    )
+
+
+def _drawn(level: int) -> Model:
+    """Interference up to the first job's end, which stays; then the end of one bar is drawn away."""
+    n = 2**level
+    sides = {"left": (0.0, LENGTH), "right": (LENGTH, 2.0 * LENGTH)}
+    mesh = join(
+        {name: rectangle(x, (0.0, 1.0), (2 * n, (2 + i) * n), "quad4") for i, (name, x) in enumerate(sides.items())}
+    )
+    return Model(
+        mesh,
+        [Solid(name, LinearElastic(SOFT, 0.0)) for name in sides],
+        [
+            *(Support(f"{name}.bottom", y=0) for name in sides),
+            Support("left.left", x=0),
+            Support("right.right", x=DRAWN, amplitude=Amplitude(((0.0, 0.0), (SHARE, 0.0), (1.0, 1.0)))),
+        ],
+        contacts=[
+            Contact(
+                "left.right", "right.left", "joint", offset=-OVERLAP,
+                amplitude=Amplitude(((0.0, 0.0), (SHARE, 1.0), (1.0, 1.0))),
+            )
+        ],
+        plane="stress",
+        solve=SolveOptions(times=(0.25, SHARE, 0.75, 1.0)),
+    )  # fmt: skip
+
+
+def _first(model: Model) -> Model:
+    """The job before: what the model does up to the share, over its whole time."""
+    return replace(
+        model,
+        loads=[replace(load, amplitude=RAMP) for load in model.loads],
+        supports=[_still(support) for support in model.supports],
+        contacts=[replace(contact, amplitude=RAMP) for contact in model.contacts],
+        solve=SolveOptions(steps=2),
+    )
+
+
+def _still(support: Support) -> Support:
+    """With what it moves at rest."""
+    at_rest: Any = {name: 0.0 for name in "xyz" if getattr(support, name) is not None}
+    return replace(support, amplitude=None, **at_rest)
+
+
+def _one_after_the_other(model: Model) -> Solution:
+    """Solve the first job, keep its restart files, and let the model begin with them."""
+    first = _first(model)
+    with tempfile.TemporaryDirectory() as folder:
+
+        def keep(_: Solution, saved: Saved) -> None:
+            save_step(Path(folder), description(first), saved)
+
+        solve(first, on_step=keep)
+        begun = load_start(Path(folder), model, SHARE)
+        own: list[float] = []
+        solution = solve(model, resume=begun, on_step=lambda _, saved: own.append(saved.state.time))
+    if min(own) <= SHARE:  # the result is the same where the model solves the first steps again
+        raise AbutError(f"expected steps after {SHARE:g} only, got some at {min(own):g}")
+    return solution
+
+
+def _stretches(solution: Solution) -> dict[str, float]:
+    nodes = solution.model.mesh.nodes_of("bar.right")
+    at = {step.factor: float(step.displacement[nodes, 0].mean()) for step in solution.steps}
+    return {"drawn": at[SHARE], "let go": at[1.0]}
+
+
+def _pressures(solution: Solution) -> dict[str, float]:
+    at = {step.factor: abs(float(step.contacts[0].force[0])) for step in solution.steps}
+    return {"pressed": at[SHARE], "drawn away": at[1.0]}
+
+
+PLASTIC = (PULL - YIELD) / HARDENING
+BARS = "two bars in a row: E (overlap - way) / 2 L"
+UNIFORM = "uniform stresses; what Newton's method leaves"
+BENCHMARKS = (
+    Benchmark(
+        "start-plastic", "bar drawn beyond yield in one job, let go in the next: what stays", _let_go, _stretches,
+        {
+            "drawn": Reference(LENGTH * (PULL / YOUNG + PLASTIC), 1e-7, "E and H in a row", UNIFORM),
+            "let go": Reference(LENGTH * PLASTIC, 1e-7, "(stress - yield stress) / H of the length", UNIFORM),
+        },
+        solve=_one_after_the_other,
+    ),
+    Benchmark(
+        "start-fit", "bars that press each other by interference in one job, drawn apart in the next", _drawn, _pressures,
+        {
+            "pressed": Reference(SOFT * OVERLAP / (2.0 * LENGTH), 1e-9, BARS, UNIFORM),
+            "drawn away": Reference(SOFT * (OVERLAP - DRAWN) / (2.0 * LENGTH), 1e-9, BARS, UNIFORM),
+        },
+        solve=_one_after_the_other,
+    ),
+)  # fmt: skip
