@@ -9,8 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.analysis.energy import NOTHING
+from abut.analysis.jumps import has_potential, unexplained
+from abut.problem.problem import ContactProblem
 from abut.solution import ContactResult
-from abut.solution.energy import Energy
+from abut.solution.energy import ENERGY, Energy
 from abut.types import Sparse
 
 Vector = NDArray[np.float64]
@@ -22,7 +24,7 @@ class FiniteActing:
     of what holds the points; pressing, rubbing: of pressures and ties, and of tractions; stored: strain energy;
     free: (n_free,) displacements; follows: (dim n_points, n_free) how the points go with them there; residual: largest
     force left on these; drag: (n_free,) that of a step which it leads, None without; flowed: work of plastic
-    flow so far. stored is not a number where a material does not tell its energy."""
+    flow so far; time: when that is. stored is not a number where a material does not tell its energy."""
 
     displacement: Vector
     internal: Vector
@@ -36,6 +38,7 @@ class FiniteActing:
     residual: float = 0.0
     drag: Vector | None = None
     flowed: float = 0.0
+    time: float = 0.0
 
     @classmethod
     def none(cls, follows: Sparse) -> FiniteActing:
@@ -45,10 +48,11 @@ class FiniteActing:
 
 
 def finite_energy(
-    before: FiniteActing, now: FiniteActing, stiffness: Vector, contacts: Sequence[ContactResult], earlier: float = 0.0
-) -> Energy:
-    """Of the step between two states. stiffness: (n_free,) diagonal of the tangent; contacts: their results; earlier: the
-    largest size of the steps before, beside which what is left after unloading is rounding."""
+    problem: ContactProblem, before: FiniteActing, now: FiniteActing, stiffness: Vector, contacts: Sequence[ContactResult],
+    earlier: float = 0.0,
+) -> Energy:  # fmt: skip
+    """Of the step of a problem between two states. stiffness: (n_free,) diagonal of the tangent; contacts: their results;
+    earlier: the largest size of the steps before, beside which what is left after unloading is rounding."""
     moved, step = now.displacement - before.displacement, now.free - before.free
 
     def work(name: str) -> float:
@@ -61,6 +65,9 @@ def finite_energy(
     stored = now.stored - before.stored if np.isfinite(now.stored) else internal - plastic
     rounding = np.finfo(float).eps * (np.abs(stiffness) * np.abs(now.free)) @ way
     size = 0.5 * float(np.abs(before.internal + now.internal) @ np.abs(moved))
+    pushed = now.drag is not None or (before.drag is not None and bool(before.drag.any()))
+    at_rest = not pushed and abs(friction) <= ENERGY * size and np.isfinite(now.stored)
+    at_rest = at_rest and has_potential(problem, before.time, now.time)
     return Energy(
         loads=work("loads"),
         supports=supports,
@@ -75,4 +82,5 @@ def finite_energy(
         stabilisation=dragged,
         plastic=plastic,
         flowed=now.flowed,
+        unexplained=unexplained(before.loads, now.loads, moved, stored + plastic) if at_rest else None,
     )

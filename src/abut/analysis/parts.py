@@ -40,6 +40,7 @@ def _energy(parts: Sequence[Energy | None]) -> Energy | None:
     known = [part for part in parts if part is not None]
     if not known:
         return None
-    total = {f.name: sum(getattr(part, f.name) for part in known) for f in fields(Energy) if f.name != "elastic"}
+    last, told = ("elastic", "unexplained"), [part.unexplained for part in known if part.unexplained is not None]
+    total = {f.name: sum(getattr(part, f.name) for part in known) for f in fields(Energy) if f.name not in last}
     most = {name: max(getattr(part, name) for part in known) for name in ("size", "earlier")}
-    return Energy(**{**total, **most, "elastic": known[-1].elastic})
+    return Energy(**{**total, **most, "elastic": known[-1].elastic, "unexplained": max(told, default=None)})

@@ -246,9 +246,9 @@ def _finite_energy(
         end.displacement, end.internal, end.loads + end.held, end.reaction - end.held, pressed,
         end.internal - end.loads - end.reaction - pressed, balance.energy, state.unknowns,
         problem.constraints.near(state.unknowns, weights(histories, state.time)).free, left,
-        drag_of(state) if is_dragged(state) else None, end.flow.work if end.flow else 0.0,
+        drag_of(state) if is_dragged(state) else None, end.flow.work if end.flow else 0.0, state.time,
     )  # fmt: skip
-    return now, finite_energy(acted, now, balance.diagonal, contacts, _largest_size(steps))
+    return now, finite_energy(problem, acted, now, balance.diagonal, contacts, _largest_size(steps))
 
 
 def _landed(state: State) -> tuple[float, float] | None:

@@ -40,6 +40,7 @@ from abut.problem.stabilising import is_dragged
 from abut.problem.step_error import landed_in
 from abut.solution import Iteration, ModesResult, Observer, OnStep, Phase, Saved, Solution, Step
 from abut.solution.flow import GO_ON
+from abut.solution.run_checks import JUMPED
 from abut.solution.state import State
 
 if TYPE_CHECKING:
@@ -312,6 +313,12 @@ class Run:
             times = ", ".join(f"{attempt.time:.6g}" for attempt in attempts)
             self.told.note(f"step {attempts[-1].number} was taken in {len(attempts)} parts, to times {times}")
             self._tell_of_limit(attempts)
+        if taken is not None and taken.jumped > JUMPED:
+            self.told.note(
+                f"step {attempts[-1].number} to time {attempts[-1].time:.6g} jumps to another equilibrium: no way of stable "
+                f"states from its beginning explains {taken.unexplained:.3g} of energy, {taken.jumped:.0%} of its work; "
+                "give more steps, or prescribe a displacement instead of the force"
+            )
         self.keep(self.so_far(complete=False), saved_step(attempts, self.kind))
         self.clock.mark("writing")
 

@@ -67,6 +67,9 @@ MODEL = {
     "until the result stays",
     "stabilisation": "bodies jumped to another equilibrium, which a note dates: forces there are right, what happens "
     "on the way is not told. To follow it prescribe a displacement instead of the force; hold what is loose by a support",
+    "jumps": "bodies jumped to another equilibrium in the steps named, or Newton's method found one that they do not come "
+    "to: give more steps (solve.steps = 40) until results before and after stay; to follow what is between, prescribe a "
+    "displacement instead of the force",
     "free rigid-body modes": "add a support, or a symmetry plane (normal = 0), that constrains the mode named in the notes",
     "strain": "check the units of Young's moduli, pressures and mesh: strains of this size are beyond linear elasticity",
     "stress error": "refine where the field stress_error is large, and round sharp inner corners, where stresses have "

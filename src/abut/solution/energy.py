@@ -25,7 +25,8 @@ class Energy:
     with finite kinematics only; earlier: with them, and after flow, the largest size of the steps before;
     stabilisation: what a drag takes on the way of a step that it leads, theory (G24); plastic: what plastic flow
     takes, with what hardening keeps of it, theory (Y11);
-    flowed: the same since the beginning.
+    flowed: the same since the beginning;
+    unexplained: what no stable way of equilibria explains where positive, theory (G25); None where that cannot be said.
     """
 
     loads: float
@@ -41,6 +42,7 @@ class Energy:
     stabilisation: float = 0.0
     plastic: float = 0.0
     flowed: float = 0.0
+    unexplained: float | None = None
 
     @property
     def error(self) -> float:
@@ -48,6 +50,15 @@ class Energy:
         missing = self.loads + self.supports + self.contact - self.stored - self.friction - self.stepping
         missing -= self.stabilisation + self.plastic
         return abs(missing) / self.size
+
+    @property
+    def jumped(self) -> float:
+        """What no stable way of equilibria explains, beyond what tolerances and pressures leave open (these do no work where
+        contact is the same at both ends), over the work of the step; 0 for none."""
+        if self.unexplained is None:
+            return 0.0
+        beyond = max(self.unexplained - self.left - abs(self.contact), 0.0)
+        return beyond / max(abs(self.loads), abs(self.stored + self.plastic), ROUNDED * self.size, 1e-300)
 
     @property
     def limit(self) -> float:

@@ -338,7 +338,7 @@ class Solution:
             *self._locking,
             *idle_contacts(self.model, [s.contacts for s in self.steps]),
             *self._apart,
-            *run_checks([(step.landed, step.energy) for step in self.steps]),
+            *run_checks([(step.factor, step.landed, step.energy) for step in self.steps]),
             *(check for result in self.modes for check in result.certificate),
         )
 
