@@ -227,3 +227,34 @@ def test_a_result_of_nothing_fails() -> None:
     assert failed(abut.solve(blocks(0.0))) == set()
     steps = abut.SolveOptions(steps=2)
     assert failed(abut.solve(replace(blocks(-0.015, gap=0.01), solve=steps))) == set()
+
+
+@pytest.mark.parametrize("kinematics", ["small", "finite"])
+@pytest.mark.parametrize(
+    "material",
+    [
+        abut.LinearElastic(210e3, 0.3, expansion=1e-5),
+        abut.Plastic(210e3, 0.3, 200.0, 1e3, expansion=1e-5),
+        abut.OverTemperature(
+            [0, 100], [abut.LinearElastic(210e3, 0.3, expansion=1e-5), abut.LinearElastic(180e3, 0.3, expansion=1e-5)]
+        ),
+    ],
+    ids=lambda material: type(material).__name__,
+)
+def test_growth_without_stress_is_an_effect(material: abut.Material, kinematics: str) -> None:
+    """A body that is heated on supports that let it grow: u = alpha T x, no stress, to rounding. A temperature without an
+    expansion has no effect, beside a motion that meets nothing too."""
+    mesh = join({"block": box((0, 1), (0, 2), (0, 1), (2, 2, 2)), "other": box((3, 4), (0, 1), (0, 1), (1, 1, 1))})
+    held = [abut.Support(f"block.{side}", **{a: 0.0}) for side, a in (("left", "x"), ("front", "y"), ("bottom", "z"))]
+    held.append(abut.Support("other.bottom", x=0, y=0, z=0))
+    solids = [abut.Solid("block", material, temperature=80.0), abut.Solid("other", material)]
+    model = abut.Model(mesh, solids, held, kinematics=kinematics)
+    solution = abut.solve(model)
+    (step,) = solution.steps
+    np.testing.assert_allclose(step.displacement[mesh.nodes_of("block")], 8e-4 * mesh.points[mesh.nodes_of("block")],
+                               atol=1e-14)  # fmt: skip
+    assert np.abs(step.stress).max() < 1e-12 * 210e3
+    assert failed(solution) == set()
+    moved = [replace(held[0], x=0.1), *held[1:]]
+    cold = [abut.Solid("block", STEEL, temperature=80.0), solids[1]]
+    assert failed(abut.solve(replace(model, solids=cold, supports=moved))) == {"response"}

@@ -22,6 +22,7 @@ from abut.analysis.node_fields import node_fields
 from abut.analysis.overlap import covered_elsewhere, overlaps
 from abut.analysis.penetrations import penetration_results
 from abut.analysis.preloads import preload_results
+from abut.analysis.response import beyond_rounding, grows
 from abut.analysis.stress_error import stress_error
 from abut.analysis.surface_stress import loaded_points, normal_stress
 from abut.analysis.thin_give import bends
@@ -58,7 +59,6 @@ from abut.solution import ContactResult, Energy, Flips, Flow, PreloadResult, Rig
 from abut.solution.state import State
 
 Acted = Acting | FiniteActing | None  # what acts at the end of a step
-NO_STRAIN = 1e-12  # nodal forces over stiffness times displacement from which down they are rounding
 
 
 @dataclass(frozen=True)
@@ -116,7 +116,7 @@ def step_result(
     stress = at_points(solids.patches, values, len(points))
     told = _finite_energy if model.finite else _energy
     acting, work = told(end, attempt, acted, contacts, before)
-    strained = _strained(balance, end.displacement, end.internal)
+    strained = beyond_rounding(end.internal, balance, end.displacement)
     pushes = [float(np.abs(pair.rows.T @ p).sum()) / 2.0 for pair, p in zip(balance.pairs, end.pressures)]
     step = Step(
         number=attempt.number,
@@ -142,6 +142,7 @@ def step_result(
         spring=held_force(springs, state),
         neutral=springs.noise,
         strained=strained,
+        grown=not strained and grows(solids, change, balance, end.displacement),
         landed=_landed(state),
         turn=turned(model, end.nodal),
         energy=work if strained else None,
@@ -374,12 +375,6 @@ def _flips(balance: Balance, attempt: Attempt) -> dict[str, Flips]:
             bits = between[pair.normal][here, None] >> np.arange(3) & 1
             flips[pair.contact.name] = Flips(pair.space.node[here].astype(np.int64), bits.astype(bool))
     return flips
-
-
-def _strained(balance: Balance, displacement: NDArray[np.float64], internal: NDArray[np.float64]) -> bool:
-    """Whether anything gives way: nodal forces of stresses (``internal``) are more than the rounding of rigid motions."""
-    stiffest = float(balance.diagonal.max(initial=0.0))
-    return bool(np.abs(internal).max(initial=0.0) > NO_STRAIN * stiffest * np.abs(displacement).max(initial=0.0))
 
 
 def _rounding(balance: Balance, free: NDArray[np.float64]) -> float:

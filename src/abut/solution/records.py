@@ -113,6 +113,7 @@ class Step:
     strain: float = 0.0  # largest contact pressure over the stiffness of the two bodies
     rounding: float = 0.0  # force that displacements in double precision cannot tell from none, over the whole model
     strained: bool = True  # whether anything gives way, beyond rounding
+    grown: bool = False  # whether temperatures alone change the size of bodies, with no stress
     rigid: Mapping[str, RigidResult] = field(default_factory=dict)
     earlier: float = 0.0  # largest force of the steps before, beside which what is left after unloading is rounding
     probes: tuple[ProbeResult, ...] = ()  # in the order of the model's
@@ -294,7 +295,7 @@ class Solution:
     def certificate(self) -> tuple[Check, ...]:
         """Every check of every contact, each at its worst over the steps, and the balance of the whole model."""
         lines: dict[tuple[str, str], list[Check]] = {}
-        idle = _driven(self.model) and not any(step.strained for step in self.steps)
+        idle = _driven(self.model) and not any(step.strained or step.grown for step in self.steps)
         response = Check("", "response", float(idle), RESPONSE, "1 where something is prescribed and nothing deforms")
         loaded = _loaded(self.model)
         most = max((step.energy.size for step in self.steps if step.energy is not None), default=0.0)
