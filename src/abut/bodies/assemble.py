@@ -107,10 +107,9 @@ def is_symmetric(solids: Solids) -> bool:
 
 
 def thermal_load(solids: Solids, temperature: TemperatureChange) -> Array:
-    """int B^T D eps_thermal, theory (F10), (dim n_points,): the forces that would expand linear bodies freely; of others what
-    holds their shape at zero displacement.
-    Integrated like the stiffness, so that a temperature whose strain the elements can follow leaves no stress; "b-bar" takes
-    the mean over each cell, as for the dilatation."""
+    """int B^T D eps_thermal, theory (F10), (dim n_points,): the forces that would expand linear bodies freely; of others
+    what keeps their shape at zero displacement. Integrated like the stiffness, so that a temperature whose strain the
+    elements can follow leaves no stress; "b-bar" takes the mean over each cell, as for the dilatation."""
     if not temperature.acts(solids):
         return np.zeros(solids.points.size)
     return -internal_force(solids, np.zeros(solids.points.shape), temperature)
