@@ -8,7 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from abut.analysis.step_records import check_order
 from abut.cli import main
+from abut.errors import InputError
+from abut.job import load_job
+from abut.output.start import load_start
 from models.steps import arrays
 
 BLOCKS = """schema = 1
@@ -147,6 +151,56 @@ def test_residual_strain_of_a_bar(tmp_path: Path) -> None:
     assert stretch == pytest.approx(2 * (300 - 200) / 1e4, rel=1e-8)
 
 
+HELD = '[[supports]]\non = "bar.back"\ny = {y}\namplitude = [["start", 0], ["assemble", 0]{later}]\n'
+SIDE = """[[loads]]
+kind = "traction"
+on = "bar.back"
+value = [0, 50, 0]
+amplitude = [["start", 0], ["assemble", 0], ["load", 1]]
+"""
+
+
+def elastic(later: bool) -> str:
+    """The bar without yield and without lateral contraction, which stays drawn."""
+    metal = 'kind = "plastic"\nyoung = 200e3\npoisson = 0.3\nyield_stress = 200\nhardening = 1e4'
+    plain = bar(later).replace(metal, 'kind = "linear-elastic"\nyoung = 200e3\npoisson = 0.0')
+    assert plain != bar(later)
+    return plain.replace('["load", 0]', '["load", 1]')
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "across"),
+    [
+        ("", HELD.format(y=-3e-4, later=', ["load", 1]'), -3e-4),
+        (HELD.format(y=0, later=""), SIDE, 50 / 200e3),
+    ],
+    ids=["held by the second job", "let go by it"],
+)
+def test_other_supports_where_nothing_moved(first: str, second: str, across: float, tmp_path: Path) -> None:
+    """A bar drawn by 300 does not move across for want of lateral contraction: a support there may come with the second
+    job, or go with it. Along it stays at 2 * 300 / E; across it follows the support, or the traction over E."""
+    assert run(tmp_path, "a", elastic(False) + first + A) == 0
+    job = elastic(True).replace("at = [2, 0, 0]", "at = [2, 1, 0]") + second + LATER + continued("b")
+    assert run(tmp_path, "b", job) == 0
+    assert main(["check", str(tmp_path / "b.toml")]) == 0
+    table = (tmp_path / "b" / "probe_end.csv").read_text().splitlines()
+    last = dict(zip(table[0].split(","), table[-1].split(",")))
+    moved = [float(value) for name, value in last.items() if "displacement" in name]
+    np.testing.assert_allclose(moved[:3], [2 * 300 / 200e3, across, 0.0], rtol=1e-9, atol=1e-14)
+
+
+def test_other_multipliers_are_told(tmp_path: Path) -> None:
+    """Supports that hold other nodes of a contactor leave other multipliers."""
+    assert run(tmp_path, "a", text("steel", False) + A) == 0
+    (tmp_path / "b.toml").write_text(text("steel", True) + LATER + continued("b"))
+    job = load_job(tmp_path / "b.toml")
+    steps = load_start(tmp_path / "a", job.model, 0.5)
+    free, multipliers = len(steps[0].state.unknowns), len(steps[0].state.multipliers)
+    check_order(steps, free, multipliers)
+    with pytest.raises(InputError, match="hold other nodes of contactors"):
+        check_order(steps, free, multipliers - 2)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
@@ -154,7 +208,8 @@ def test_residual_strain_of_a_bar(tmp_path: Path) -> None:
         ("cells = [6, 3]", "cells = [5, 3]", "mesh."),
         ("friction = 0.3", "friction = 0.2", "contacts[0].friction"),
         ('results = "a"', 'results = "nowhere"', "restart = true"),
-        ('["assemble", 0.1]', '["assemble", 0.2]', "not in balance"),
+        ('["assemble", 0.1]', '["assemble", 0.2]', "supports of this job"),
+        ("[[contacts]]", '[[supports]]\non = "lower.right"\nx = 0\n[[contacts]]', "'lower.right'"),
         ('["assemble", 1]', '["assemble", 0.9]', "not in balance"),
         ('time = "assemble"', 'time = "load"', "before the end"),
         ('directory = "b"', 'directory = "a"', "output.directory"),

@@ -319,7 +319,7 @@ class Run:
                 f"states from its beginning explains {taken.unexplained:.3g} of energy, {taken.jumped:.0%} of its work; "
                 "give more steps, or prescribe a displacement instead of the force"
             )
-        self.keep(self.so_far(complete=False), saved_step(attempts, self.kind))
+        self.keep(self.so_far(complete=False), saved_step(attempts, self.kind, self.assembled.problem))
         self.clock.mark("writing")
 
     def _tell_of_limit(self, parts: Sequence[Attempt]) -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from abut import checks
 from abut.analysis.run import Run
+from abut.analysis.taken import taken_up
 from abut.errors import OutOfTime
 from abut.model import Model
 from abut.nonlinear.settings import DEFAULT, Settings
@@ -93,6 +94,7 @@ def solve(
             checks.function(function, f"solve: {name}")
     checks.records(resume, "solve: resume", (Saved,))
     checks.instance(settings, Settings, "solve: settings", "settings (abut.nonlinear.settings.Settings)")
+    resume = taken_up(resume, model)
     run = Run.of(model, observer or _silent, on_step or _silent, team, resume, settings)
     first = run.restore(resume)
     try:

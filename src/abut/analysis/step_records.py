@@ -17,17 +17,25 @@ from abut.solution.state import State
 TAKEN = 1e-6  # of forces and pressures: what steps of another job may be off balance; solved ones are at 1e-9 and below
 
 
-def saved_step(parts: Sequence[Attempt], linear: str) -> Saved:
-    """Of the parts that a step was taken in. linear: the solver that was used, "direct" or "amg"."""
+def saved_step(parts: Sequence[Attempt], linear: str, problem: ContactProblem) -> Saved:
+    """Of the parts that a step of a problem was taken in. linear: the solver that was used, "direct" or "amg"."""
     last, iterations = parts[-1], tuple(row for part in parts for row in part.iterations)
-    earlier = tuple(SavedPart(part.state, part.inside, len(part.iterations)) for part in parts[:-1])
-    return Saved(last.number, last.state, last.inside, linear, iterations, earlier)
+    moved = [None if problem.model.finite else problem.displacement(part.state) for part in parts]
+    earlier = tuple(
+        SavedPart(part.state, part.inside, len(part.iterations), here) for part, here in zip(parts[:-1], moved)
+    )
+    return Saved(last.number, last.state, last.inside, linear, iterations, earlier, displacement=moved[-1])
 
 
 def check_order(resume: Sequence[Saved], n_free: int, n_multipliers: int) -> None:
     """Raise InputError unless the records are those of steps 1, 2, ... of a model of this size."""
     for number, saved in enumerate(resume, start=1):
         sizes = len(saved.state.unknowns), len(saved.state.multipliers)
+        if saved.taken and sizes[1] != n_multipliers:
+            raise InputError(
+                f"start: this job has {n_multipliers} multipliers on its contacts, step {saved.number} of the job before "
+                f"{sizes[1]}: supports hold other nodes of contactors than they did; give supports on contactors as there"
+            )
         if saved.number != number or sizes != (n_free, n_multipliers):
             raise InputError(
                 f"resume: expected step {number} with {n_free} displacements and {n_multipliers} multipliers, got step "

@@ -37,6 +37,7 @@ def add_check(commands: Any) -> None:
 
 
 def _check(arguments: argparse.Namespace) -> int:
+    from abut.analysis.taken import require_fit
     from abut.diagnosis import Finding, Report, check, from_error
     from abut.diagnosis.earlier import sizes_wanted
     from abut.diagnosis.finding import in_order
@@ -57,7 +58,9 @@ def _check(arguments: argparse.Namespace) -> int:
     report = check(job.model)
     if job.start is not None:
         try:
-            load_start(job.start.results, job.model, job.start.share)
+            begun = load_start(job.start.results, job.model, job.start.share)
+            if report.count("error") == 0:
+                require_fit(begun, job.model)
         except AbutError as error:
             report = Report(in_order([from_error(error, "start"), *report.findings]), report.motions)
     where = "deck" if job.path.suffix.lower() == DECK else "notes"

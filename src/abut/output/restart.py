@@ -27,6 +27,7 @@ SCHEMA = 5  # of the files
 ARRAYS = ("unknowns", "multipliers", "status")  # of the state
 HISTORY, CONTACT, DRAG = "history.", "contact.", "drag"  # what the names of the other ones begin with, or are
 RATES = ("velocities", "accelerations")  # with a time integration
+MOVED = "displacement"  # of all points, with small displacements
 FIELDS = ("slips", "inner", "following", "fit")  # of a contact's history
 COUNTS, SIZES = ("step", "iteration", "active", "changed"), ("residual", "contact_residual", "penetration", "seconds")
 NAMED = 4  # differences of a changed model that the message lists
@@ -77,9 +78,9 @@ def save_step(directory: Path, model: Mapping[str, str], saved: Saved) -> None:
         "parts": [part.iterations for part in saved.parts],
         "model": dict(model),
     }
-    arrays = _arrays(saved.state, saved.inside, "")
+    arrays = _arrays(saved, "")
     for i, part in enumerate(saved.parts):
-        arrays |= _arrays(part.state, part.inside, f"part{i}.")
+        arrays |= _arrays(part, f"part{i}.")
 
     def write(temporary: Path) -> None:
         with open(temporary, "wb") as file:  # not a name: NumPy would add an ending to it
@@ -88,8 +89,9 @@ def save_step(directory: Path, model: Mapping[str, str], saved: Saved) -> None:
     write_file(folder / f"{saved.number:04d}.npz", write)
 
 
-def _arrays(state: State, inside: NDArray[np.bool_], of: str) -> dict[str, Any]:
-    """A state, and where "dual-P1" has ordinary functions, by name; of: what the names begin with."""
+def _arrays(saved: Saved | SavedPart, of: str) -> dict[str, Any]:
+    """A state, where "dual-P1" has ordinary functions, and displacements, by name; of: what the names begin with."""
+    state = saved.state
     arrays = {of + name: getattr(state, name) for name in ARRAYS}
     arrays |= {of + HISTORY + name: values for name, values in state.history.arrays.items()}
     for name, contact in state.history.contacts.items():
@@ -101,8 +103,10 @@ def _arrays(state: State, inside: NDArray[np.bool_], of: str) -> dict[str, Any]:
         arrays[of + DRAG] = state.history.drag
     if state.rates is not None:
         arrays |= {of + name: getattr(state.rates, name) for name in RATES}
+    if saved.displacement is not None:
+        arrays[of + MOVED] = saved.displacement
     largest = np.array([state.largest.force, state.largest.pressure])
-    return {**arrays, of + "inside": inside, of + "time": np.array(state.time), of + "largest": largest}
+    return {**arrays, of + "inside": saved.inside, of + "time": np.array(state.time), of + "largest": largest}
 
 
 def _state(data: Mapping[str, Any], names: Sequence[str], of: str) -> tuple[State, NDArray[np.bool_]]:
@@ -122,6 +126,16 @@ def _state(data: Mapping[str, Any], names: Sequence[str], of: str) -> tuple[Stat
     whole = History(history, _contacts(data, names, of + CONTACT), drag)
     rates = Rates(*(data[of + name] for name in RATES)) if of + RATES[0] in names else None
     return State(time, **arrays, history=whole, largest=Largest(*map(float, largest)), rates=rates), inside
+
+
+def _displacement(data: Mapping[str, Any], of: str) -> NDArray[np.float64] | None:
+    """Of all points, None without. Raises ValueError for anything else."""
+    if of + MOVED not in data:
+        return None
+    values = data[of + MOVED]
+    if values.dtype != float or values.ndim != 1 or not np.isfinite(values).all():
+        raise ValueError("not displacements")
+    return np.asarray(values)
 
 
 def _contacts(data: Mapping[str, Any], names: Sequence[str], of: str) -> dict[str, ContactHistory]:
@@ -198,6 +212,7 @@ def _read(path: Path) -> tuple[Saved, str, dict[str, str]]:
         head = json.loads(str(data["head"]))
         state, inside = _state(data, data.files, "")
         parts = [(*_state(data, data.files, f"part{i}."), count) for i, count in enumerate(head["parts"])]
+        moved = [_displacement(data, of) for of in ("", *(f"part{i}." for i in range(len(parts))))]
     rows = tuple(Iteration(**row) for row in head["iterations"])
     texts = [head["abut"], head["linear"], *head["model"].keys(), *head["model"].values()]
     if type(head["schema"]) is not int or head["schema"] != SCHEMA:
@@ -208,7 +223,8 @@ def _read(path: Path) -> tuple[Saved, str, dict[str, str]]:
         raise ValueError("not the head of a record")
     if not all(type(size) in (int, float) for size in sizes):
         raise ValueError("not the head of a record")
-    saved = Saved(head["number"], state, inside, head["linear"], rows, tuple(SavedPart(*part) for part in parts))
+    earlier = tuple(SavedPart(*part, here) for part, here in zip(parts, moved[1:]))
+    saved = Saved(head["number"], state, inside, head["linear"], rows, earlier, displacement=moved[0])
     return saved, head["abut"], head["model"]
 
 

@@ -194,12 +194,13 @@ class Step:
 
 @dataclass(frozen=True)
 class SavedPart:
-    """State at the end of a part of a step, where ``inside`` of it "dual-P1" has ordinary functions, and how many of the
-    step's iterations it took."""
+    """State at the end of a part of a step, where ``inside`` of it "dual-P1" has ordinary functions, how many of the step's
+    iterations it took, and ``displacement`` as in ``Saved``."""
 
     state: State
     inside: NDArray[np.bool_]
     iterations: int
+    displacement: NDArray[np.float64] | None = None
 
 
 @dataclass(frozen=True)
@@ -208,7 +209,8 @@ class Saved:
 
     state: at its end; inside: (n,) where "dual-P1" has ordinary functions; linear: the linear solver, "direct" or "amg";
     iterations: for the log; parts: those before the last, of a step that was halved; taken: whether it is that of another
-    job, whose balance is compared before the run goes on.
+    job, whose balance is compared before the run goes on; displacement: (dim n_points,) of all points, which does not depend
+    on what supports leave free, with small displacements.
     """
 
     number: int
@@ -218,6 +220,7 @@ class Saved:
     iterations: tuple[Iteration, ...]
     parts: tuple[SavedPart, ...] = ()
     taken: bool = False
+    displacement: NDArray[np.float64] | None = None
 
 
 @dataclass(frozen=True)
