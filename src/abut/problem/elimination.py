@@ -11,13 +11,13 @@ import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
 from abut.errors import SingularModelError
+from abut.problem.contradictions import among
 from abut.types import Sparse
 
 DEPENDENT = 1e-8  # coefficients over the constraint's own from which on it says something new
 CANCELLED = 1e-13  # coefficients over the largest that are what subtractions left
 PIVOT = 0.1  # coefficients over the largest among which the pivot may be chosen so that few others change
 AGREE = 1e-9  # of the values that make it up: what may be missing where constraints repeat each other
-NAMED = 6  # constraints named in an error
 
 
 @dataclass(frozen=True)
@@ -155,10 +155,7 @@ def _contradiction(i: int, through: Sequence[int], solved: dict[int, Expression]
             involved.add(solved[k].source)
             pending += solved[k].through
     others = list(dict.fromkeys(names[k] for k in sorted(involved)))
-    more = f" and {len(others) - NAMED} more" if len(others) > NAMED else ""
-    if len(others) == 1:
-        return f"{others[0]} contradicts what is prescribed at its points: no displacement meets both; take one of them out"
-    return f"{', '.join(others[:NAMED])}{more} contradict each other: no displacement meets all; take one of them out"
+    return among(others)
 
 
 def row_products(free: Sparse, rows: NDArray[np.int64]) -> NDArray[np.float64]:
