@@ -17,8 +17,7 @@ from abut.dofs import dofs_at, n_dofs, n_places, place_of, widened
 from abut.fields import evaluate
 from abut.mesh.mesh import Mesh
 from abut.model import Model, Support
-from abut.problem import contradictions
-from abut.problem.elimination import Links, eliminate, row_products
+from abut.problem.elimination import Links, contradiction_at_node, eliminate, row_products
 from abut.problem.other_fields import OtherFields
 from abut.problem.rigid_bodies import RigidBody, body_rows, rigid_bodies
 from abut.problem.sections import shortenings_of
@@ -298,7 +297,7 @@ def _node_by_node(
         basis, x = _solve_node(matrix, target)
         if np.abs(matrix @ x - target).max() > max(slack, 1e-9 * np.abs(target).max()):
             names = [_name(model, i) for i in np.unique(origin[first:last])]
-            raise contradictions.at_node(names, f"at node {k} (at {mesh.points[k].tolist()})")
+            raise contradiction_at_node(names, f"at node {k} (at {mesh.points[k].tolist()})")
         prescribed[k] = x
         count = basis.shape[1]
         free_rows.append(np.tile(dofs_at(k, dim), count))
