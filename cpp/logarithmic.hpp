@@ -50,8 +50,8 @@ public:
   }
   double across() const { return matrix[2][2]; }
 
-  // Turns stress and tangent in the space of logarithms into those of Piola, Kirchhoff, Green and Lagrange, theory
-  // (Y9), (Y10), the tangent along the principal axes.
+  // Turns stress and tangent in the space of logarithms into those of Piola, Kirchhoff, Green and Lagrange,
+  // theory (Y9), (Y10), the tangent along the principal axes.
   void back(double *stress, Dense &tangent) const {
     Square given, wide, own, rows, columns; // of the turn, and transposed
     stress_rotation(columns);

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from abut.errors import SingularModelError, Unsound
 from abut.linear.solver import LinearSolver, Prepared
 from abut.nonlinear.drag import Drag, dragged
+from abut.nonlinear.exchange import exchanged
 from abut.nonlinear.finite_laws import (
     Asked,
     barely_covered,
@@ -26,7 +27,7 @@ from abut.nonlinear.finite_laws import (
 )
 from abut.nonlinear.forcing import forcing
 from abut.nonlinear.friction_laws import friction_laws
-from abut.nonlinear.holding import resisting, sticking
+from abut.nonlinear.holding import not_adrift, resisting, sticking
 from abut.nonlinear.iteration import Found, Increment, advance, largest_force, largest_pressure, part_of, points
 from abut.nonlinear.line_search import shortened
 from abut.nonlinear.newton import End, Method, newton
@@ -179,19 +180,22 @@ class LargeMotion(Method[Trial]):
 
     def __init__(self, step: Step, begun: float) -> None:
         self._step, self.begun = step, begun
-        self._before, self._errors = np.inf, list[float]()
+        self._closings = np.zeros(len(step.before.status), dtype=np.int64)
+        self._before, self._errors, self._swapped = np.inf, list[float](), False
 
     def advanced(self, here: Trial) -> Trial:
         """As in ``Method``."""
         step = self._step
         accuracy = forcing(here.error, self._before, step.settings)
-        following = _following(step, here, accuracy)
+        following, self._swapped = _following(step, here, self._closings, accuracy)
         step.asked = replace(step.asked, by_pressure=False)
-        return _tried(step, here, following)
+        there = _tried(step, here, following)
+        self._closings += there.state.closed & ~here.state.closed
+        return there
 
     def globalised(self, here: Trial, there: Trial) -> Trial:
         """The whole step, or the part of it that a line search finds to be better."""
-        if self._step.careful or not np.isfinite(there.size):
+        if (self._step.careful and not self._swapped) or not np.isfinite(there.size):
             there = _shortened(self._step, here, there)
         if not np.isfinite(there.size):
             self._step.failed = "forces are not finite"
@@ -226,18 +230,25 @@ def _unsettled(step: Step, here: Trial) -> str:
     )
 
 
-def _following(step: Step, here: Trial, accuracy: float) -> State:
-    """One iteration on; of a careful step with the status that the laws ask for at its end, if it can be found."""
+def _following(step: Step, here: Trial, closings: NDArray[np.int64], accuracy: float) -> tuple[State, bool]:
+    """One iteration on, and whether a point has taken the place of another in it; of a careful step with the status that the
+    laws ask for at its end, if it can be found. closings: as in ``exchanged``."""
+
+    def solved(state: State) -> State:
+        return step.advanced(here.system, state, laws_of(here.system, state, step.asked), accuracy)
+
     there = _iterated(step, here.system, here.state, here.laws, accuracy)
+    other = exchanged(here.system, here.state, there, closings, step.settings.newton.again, solved)
+    if other is not there:
+        return other, True
     seen = {here.state.status.tobytes()}
     while step.careful and len(seen) < step.settings.newton.solutions:
         wanted = wanted_status(here.system, there, step.increment, step.asked)
         if wanted.tobytes() in seen:
             break
         seen.add(wanted.tobytes())
-        state = here.state.with_status(wanted)
-        there = step.advanced(here.system, state, laws_of(here.system, state, step.asked), accuracy)
-    return there
+        there = solved(here.state.with_status(wanted))
+    return there, False
 
 
 def _iterated(
@@ -249,7 +260,9 @@ def _iterated(
     there = step.advanced(system, state, laws, accuracy)
     near = step.settings.holding.near
     stuck = sticking(step.problem, system, state, there, near)
-    return there if stuck is state else step.advanced(system, stuck, laws_of(system, stuck, step.asked), accuracy)
+    if stuck is not state:
+        there = step.advanced(system, stuck, laws_of(system, stuck, step.asked), accuracy)
+    return not_adrift(step.problem, system, stuck, there, near)
 
 
 def _balanced(step: Step, here: Trial, before: float) -> bool:

@@ -42,6 +42,9 @@ class NewtonSettings:
     bent: float = _of(
         0.2, "facets", "gap up to which a point that presses stays closed for an iteration", "test_opening.py",
     )  # fmt: skip
+    again: int = _of(
+        2, "closings in a step", "after which a point may take the place of another", "test_verify.py",
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -102,7 +105,8 @@ class DragSettings:
     """A drag that leads a step, theory (G23). Relative forces are over the largest of the step."""
 
     slight: float = _of(
-        1e-3, "of the stiffness, of the largest force", "drag to begin with, at which bodies are all but at rest",
+        1e-3, "of the stiffness, of the largest force, of the strongest resistance to a rigid motion",
+        "drag to begin with, at which bodies are all but at rest; what contact holds by less, such a drag holds rather",
         "test_stabilised.py",
     )  # fmt: skip
     change: float = _of(10.0, "drag over the last one", "at most from part to part", "test_stabilised.py")
