@@ -161,8 +161,10 @@ def test_the_softer_side_should_be_the_contactor() -> None:
 def test_contradicting_supports() -> None:
     model = blocks()
     report = check(replace(model, supports=[*model.supports, abut.Support("upper.top", z=0.5)]))
-    assert "contradict each other" in said(report, "error")
+    assert "supports on 'upper.top' contradict each other at node" in said(report, "error")
     assert report.status == 4
+    report = check(replace(model, supports=[*model.supports, abut.Support("upper.left", z=0.5)]))
+    assert "support on 'upper.left' and support on 'upper.top' contradict each other at node" in said(report, "error")
 
 
 def test_supports_on_a_contactor() -> None:

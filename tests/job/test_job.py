@@ -106,7 +106,21 @@ def test_absurd_units(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
 def test_contradicting_supports(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     status, error = run(tmp_path, TEXT + '\n[[supports]]\non = "upper.top"\nz = 0.5\n', capsys)
     assert status == 4
-    assert "contradict each other" in error
+    assert "supports on 'upper.top' contradict each other at node" in error
+
+
+@pytest.mark.parametrize("name", ["results", "results/deep/er"])
+def test_a_file_where_results_should_go(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Foreseen by the check, which names the file, and refused by the run before it solves."""
+    (tmp_path / "results").write_text("notes")
+    status, error = run(tmp_path, TEXT + f'\n[output]\ndirectory = "{name}"\n', capsys)
+    assert (status, "cannot create the output directory" in error) == (2, True)
+    assert main(["check", str(tmp_path / "job.toml")]) == 2
+    said = capsys.readouterr().out
+    assert f"{tmp_path / 'results'} is a file; choose another" in said
+    assert (tmp_path / "results").read_text() == "notes"
+    (tmp_path / "results").unlink()
+    assert main(["check", str(tmp_path / "job.toml")]) == 0
 
 
 @pytest.mark.parametrize("law", ["complementarity", "constraint-function"])

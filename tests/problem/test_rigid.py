@@ -148,7 +148,7 @@ def test_supports_on_a_rigid_body() -> None:
     assert np.abs(step.displacement - by_components.displacement).max() < EXACT * 0.01
     assert step.reactions["tool.top"] == pytest.approx(by_components.rigid["tool"].force, rel=EXACT, abs=1e-9)
     twice = pressed(**DOWN)
-    with pytest.raises(SingularModelError, match=r"rigid body 'tool', support on 'tool\.top' contradict"):
+    with pytest.raises(SingularModelError, match=r"rigid body 'tool' and support on 'tool\.top' contradict"):
         abut.solve(replace(twice, supports=[*twice.supports, abut.Support("tool.top", y=-0.02)]))
 
 

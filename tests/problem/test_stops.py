@@ -117,6 +117,17 @@ distance = 0.02
 """
 
 
+@pytest.mark.parametrize("mesh", [FLAT, SOLID], ids=["flat", "solid"])
+def test_a_stop_in_its_own_body(mesh):
+    """The direction of a stop is out of the surface; beyond the body, and aside, it is left to what may turn there."""
+    into = (0.0,) * (mesh.dim - 1) + (-1.0,)
+    with pytest.raises(InputError, match=r"stops\[0\].direction: .* points from 'bar.top' into its own body 'bar'"):
+        abut.add_stops(mesh, [abut.Stop("bar.top", into, GAP)])
+    aside = (1.0,) + (0.0,) * (mesh.dim - 1)
+    abut.add_stops(mesh, [abut.Stop("bar.top", aside, GAP)])
+    abut.add_stops(mesh, [abut.Stop("bar.top", into, 1.1 * LENGTH)])
+
+
 def test_a_job(tmp_path):
     path = tmp_path / "job.toml"
     path.write_text(JOB, encoding="utf-8")

@@ -41,6 +41,7 @@ def _check(arguments: argparse.Namespace) -> int:
     from abut.diagnosis import Finding, Report, check, from_error
     from abut.diagnosis.earlier import sizes_wanted
     from abut.diagnosis.finding import in_order
+    from abut.diagnosis.results_folder import results_folder
     from abut.job import load_job
     from abut.job.load import DECK
     from abut.job.pairs import write_pairs
@@ -65,7 +66,8 @@ def _check(arguments: argparse.Namespace) -> int:
             report = Report(in_order([from_error(error, "start"), *report.findings]), report.motions)
     where = "deck" if job.path.suffix.lower() == DECK else "notes"
     found = tuple(Finding("info", where, note) for note in job.notes)
-    report = Report(in_order([*report.findings, *sizes_wanted(job.directory), *found]), report.motions)
+    of_results = (*results_folder(job.directory), *sizes_wanted(job.directory))
+    report = Report(in_order([*report.findings, *of_results, *found]), report.motions)
     if arguments.output is not None:
         _write_motions(arguments.output, job, report)
     if arguments.write_pairs is not None:

@@ -53,6 +53,12 @@ def make_directory(path: Path) -> None:
         raise InputError(f"cannot create the output directory {path}: {why}; choose another") from None
 
 
+def in_the_way(path: Path) -> Path | None:
+    """A file where ``make_directory`` needs a folder; None where there is none."""
+    at = next((p for p in (path, *path.parents) if os.path.lexists(p)), None)
+    return None if at is None or at.is_dir() else at
+
+
 def remove_leftovers(folder: Path) -> None:
     """Remove temporary files of runs that were killed; those of processes still alive stay."""
     for path in folder.glob(".*.tmp*"):

@@ -9,6 +9,7 @@ import numpy as np
 
 from abut import checks
 from abut.errors import InputError
+from abut.mesh.facets import bodies_at
 from abut.mesh.make import box, rectangle
 from abut.mesh.mesh import CellBlock, Mesh
 from abut.mesh.record import MeshRecord
@@ -109,7 +110,8 @@ def add_stops(mesh: Mesh, stops: Sequence[Stop], plane: str | None = None) -> St
     Raises
     ------
     InputError
-        For surfaces that do not exist, names that are taken, and directions of another dimension.
+        For surfaces that do not exist, names that are taken, directions of another dimension, and planes that the body of
+        the surface reaches through where the surface faces the other way.
 
     Examples
     --------
@@ -129,6 +131,7 @@ def add_stops(mesh: Mesh, stops: Sequence[Stop], plane: str | None = None) -> St
             raise InputError(f"{where}.direction: expected {mesh.dim} numbers, got {len(stop.direction)}")
         if stop.name in mesh.bodies:
             raise InputError(f"{where}.name: there is a body '{stop.name}'; give the stop another name")
+        _check_side(mesh, stop, where)
         body = _plane(mesh.points[mesh.nodes_of(stop.on)], stop, plane == "axisymmetric", where)
         mesh = _with(mesh, body, stop.name)
         rigid.append(_held(stop.name, mesh.dim, plane == "axisymmetric"))
@@ -162,6 +165,24 @@ def _plane(points: Array, stop: Stop, axisymmetric: bool, where: str) -> Mesh:
     if axisymmetric:
         placed[:, 0] = np.maximum(placed[:, 0], 0.0)
     return replace(made, points=placed)
+
+
+def _check_side(mesh: Mesh, stop: Stop, where: str) -> None:
+    """Raise InputError where all of a surface faces against the direction, and its body reaches through the plane."""
+    surface = mesh.surface(stop.on)
+    edges = np.diff(mesh.points[surface.nodes[:, : mesh.dim]], axis=1)  # between corners, counterclockwise from outside
+    normal = np.cross(edges[:, 0], edges[:, 1]) if mesh.dim == 3 else edges[:, 0] @ np.array([[0.0, -1.0], [1.0, 0.0]])
+    along = np.array(stop.direction) / np.linalg.norm(stop.direction)
+    if (normal @ along > -ALONG * np.linalg.norm(normal, axis=1)).any():
+        return
+    bodies = bodies_at(mesh, surface.cells)
+    own = np.concatenate([mesh.nodes_of(body) for body in bodies])
+    behind = float((mesh.points[own] @ along).max() - (mesh.points[surface.node_ids] @ along).max())
+    if behind > stop.distance:
+        raise InputError(
+            f"{where}.direction: {stop.direction} points from '{stop.on}' into its own body '{bodies[0]}', in which the "
+            "plane would stand; turn the direction round, or name the surface that faces the stop"
+        )
 
 
 def _frame(along: Array) -> Array:

@@ -14,11 +14,10 @@ from abut._core import principal_submatrix
 from abut.bordered import Bordered
 from abut.contact.geometry import nodal_normals
 from abut.dofs import dofs_at, n_dofs, n_places, place_of, widened
-from abut.errors import SingularModelError
 from abut.fields import evaluate
 from abut.mesh.mesh import Mesh
 from abut.model import Model, Support
-from abut.problem.elimination import Links, eliminate, row_products
+from abut.problem.elimination import Links, contradiction_at_node, eliminate, row_products
 from abut.problem.other_fields import OtherFields
 from abut.problem.rigid_bodies import RigidBody, body_rows, rigid_bodies
 from abut.problem.sections import shortenings_of
@@ -297,11 +296,8 @@ def _node_by_node(
         matrix, target = direction[first:last], value[first:last]
         basis, x = _solve_node(matrix, target)
         if np.abs(matrix @ x - target).max() > max(slack, 1e-9 * np.abs(target).max()):
-            names = ", ".join(sorted({_name(model, i) for i in origin[first:last]}))
-            raise SingularModelError(
-                f"{names} contradict each other at node {k} (at {mesh.points[k].tolist()}): "
-                "they prescribe different displacements in one direction; take one of them out"
-            )
+            names = [_name(model, i) for i in np.unique(origin[first:last])]
+            raise contradiction_at_node(names, f"at node {k} (at {mesh.points[k].tolist()})")
         prescribed[k] = x
         count = basis.shape[1]
         free_rows.append(np.tile(dofs_at(k, dim), count))

@@ -16,8 +16,8 @@ from abut.types import Sparse
 DEPENDENT = 1e-8  # coefficients over the constraint's own from which on it says something new
 CANCELLED = 1e-13  # coefficients over the largest that are what subtractions left
 PIVOT = 0.1  # coefficients over the largest among which the pivot may be chosen so that few others change
-AGREE = 1e-9  # of the values that make it up: what may be missing where constraints repeat each other
 NAMED = 6  # constraints named in an error
+AGREE = 1e-9  # of the values that make it up: what may be missing where constraints repeat each other
 
 
 @dataclass(frozen=True)
@@ -155,10 +155,26 @@ def _contradiction(i: int, through: Sequence[int], solved: dict[int, Expression]
             involved.add(solved[k].source)
             pending += solved[k].through
     others = list(dict.fromkeys(names[k] for k in sorted(involved)))
-    more = f" and {len(others) - NAMED} more" if len(others) > NAMED else ""
     if len(others) == 1:
         return f"{others[0]} contradicts what is prescribed at its points: no displacement meets both; take one of them out"
-    return f"{', '.join(others[:NAMED])}{more} contradict each other: no displacement meets all; take one of them out"
+    return f"{_listed(others)} contradict each other: no displacement meets all; take one of them out"
+
+
+def contradiction_at_node(names: Sequence[str], where: str) -> SingularModelError:
+    """Of supports that give a node different displacements in one direction. names: of each, alike where they are on one
+    group."""
+    what, known = "different displacements in one direction", sorted(set(names))
+    if len(names) == 1:
+        return SingularModelError(f"{names[0]} contradicts itself {where}: it prescribes {what}; leave out a component")
+    who = _listed(known) if len(known) > 1 else known[0].replace("support", "supports", 1)
+    return SingularModelError(f"{who} contradict each other {where}: they prescribe {what}; take one of them out")
+
+
+def _listed(names: Sequence[str]) -> str:
+    """Two or more names in a sentence."""
+    if len(names) > NAMED:
+        names = [*names[:NAMED], f"{len(names) - NAMED} more"]
+    return f"{', '.join(names[:-1])} and {names[-1]}"
 
 
 def row_products(free: Sparse, rows: NDArray[np.int64]) -> NDArray[np.float64]:
