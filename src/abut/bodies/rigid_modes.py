@@ -89,10 +89,12 @@ def resistance_of_rows(rigid: RigidModes, rows: Sparse) -> NDArray[np.float64]:
     return np.asarray(motion.T @ motion) / rows.shape[0]
 
 
-def free_motions(grams: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
-    """Null vectors (n_modes, n_free) of the sum of all resistances, of which the first is that of the supports."""
+def free_motions(grams: Sequence[NDArray[np.float64]], supported: float = 1.0) -> NDArray[np.float64]:
+    """Null vectors (n_modes, n_free) of the sum of all resistances. supported: share of what is enough of others that is
+    enough of the first one, that of supports (``SUPPORTED`` where bodies that nothing holds are refused; a way to the
+    solution needs them to hold as well as contact does: the benchmark "capstan-tri6")."""
     total = sum(grams)
-    values, vectors = np.linalg.eigh(total + (1.0 / SUPPORTED - 1.0) * grams[0])
+    values, vectors = np.linalg.eigh(total + (1.0 / supported - 1.0) * grams[0])
     most = max(float(np.linalg.eigvalsh(total).max(initial=0.0)), 1e-300)
     return np.asarray(vectors[:, values < FREE * most])
 

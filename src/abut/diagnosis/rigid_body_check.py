@@ -8,7 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut.bodies.rigid_modes import each_motion, free_motions
+from abut.bodies.rigid_modes import SUPPORTED, each_motion, free_motions
 from abut.diagnosis.all_restraint import all_restraint
 from abut.diagnosis.finding import Finding, Motion, from_error
 from abut.errors import SingularModelError
@@ -29,8 +29,8 @@ def motions(model: Model, constraints: Constraints, pairs: Sequence[Pair]) -> tu
     restrained = all_restraint(model, constraints, pairs)
     findings: list[Finding] = []
     complete = len(pairs) == len(model.contacts)
-    every = free_motions([restrained.supports])
-    lost = free_motions(restrained.everything)
+    every = free_motions([restrained.supports], SUPPORTED)
+    lost = free_motions(restrained.everything, SUPPORTED)
     by_contact = every - lost @ (lost.T @ every)
     basis, size, _ = np.linalg.svd(by_contact, full_matrices=False)
     shown = _motions(model, restrained, basis[:, size > 0.5], "contact")

@@ -11,7 +11,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
-from abut.bodies.rigid_modes import RigidModes, describe, each_motion, free_motions, simple_motions
+from abut.bodies.rigid_modes import SUPPORTED, RigidModes, describe, each_motion, free_motions, simple_motions
 from abut.errors import SingularModelError
 from abut.model import Frequencies, Model
 from abut.problem.constraints import Constraints
@@ -87,7 +87,7 @@ def free_mode_springs(
     something else holds the neutral ones (``held_motions``); floats: bodies that nothing touches or loads may do so.
     Raises SingularModelError for a motion on which loads do work, and for a body that nothing touches or loads.
     """
-    motions = free_motions(resistances)
+    motions = free_motions(resistances, SUPPORTED)
     if neutral is not None and settled is not None:
         motions = beyond(motions, np.concatenate([neutral.motions, settled], axis=1))
     notes: list[str] = []

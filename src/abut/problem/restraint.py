@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.optimize import nnls
 
 from abut.bodies.rigid_modes import (
+    SUPPORTED,
     RigidModes,
     describe,
     free_motions,
@@ -140,7 +141,7 @@ class Restraint:
     def unheld(self, forces: Sequence[NDArray[np.float64]]) -> str:
         """A motion, in words, by which a body can leave its contact and that no load ever turns back; empty where there
         is none. forces: (n_free,) of each load step, none of which is out of balance."""
-        free = free_motions([self.supports])
+        free = free_motions([self.supports], SUPPORTED)
         moves = self.constraints.coordinates(self.rigid.modes @ free)
         works = [(moves.T @ force, float(np.abs(force).sum())) for force in forces]
         motion = unheld(self.pairs, moves, works)
@@ -151,7 +152,7 @@ class Restraint:
         (n_free,) do work if ``driven``, else none that turns it back."""
         plain = simple_motions(self.rigid, motion)
         moves = self.constraints.coordinates(self.rigid.modes @ plain)
-        free = free_motions([self.bare])
+        free = free_motions([self.bare], SUPPORTED)
         stays = np.linalg.norm(plain - free @ (free.T @ plain), axis=0) < 1e-6 * np.linalg.norm(plain, axis=0)
         opens = np.zeros(plain.shape[1])
         for pair in self.pairs:
@@ -171,7 +172,7 @@ class Restraint:
     def _moved(self, force: NDArray[np.float64], active: NDArray[np.bool_] | None = None) -> NDArray[np.float64] | None:
         """The motion (n_modes,) that forces (n_free,) cause though contact, or that of the multipliers ``active`` alone,
         pushes where it can; None where there is none."""
-        free = free_motions([self.supports])
+        free = free_motions([self.supports], SUPPORTED)
         moves = self.constraints.coordinates(self.rigid.modes @ free)
         motion = unbalanced(self.pairs, moves, moves.T @ force, float(np.abs(force).sum()), active)
         return None if motion is None else free @ motion
@@ -183,7 +184,7 @@ class Restraint:
         ]
 
     def _holds(self, active: NDArray[np.bool_]) -> bool:
-        return free_motions([self.supports, *self._rows(active)]).shape[1] == 0
+        return free_motions([self.supports, *self._rows(active)], SUPPORTED).shape[1] == 0
 
 
 def unbalanced(
@@ -335,8 +336,10 @@ def _restraint(
     bare: NDArray[np.float64],
 ) -> Restraint:
     ties = [resistance_of_rows(rigid, p.rows) for p in pairs if p.two_way]
-    by_supports = free_motions([support, *ties]).shape[1] == 0
-    return Restraint(rigid, constraints, support, pairs, bare, by_supports, rigid.modes @ free_motions([support]))
+    by_supports = free_motions([support, *ties], SUPPORTED).shape[1] == 0
+    return Restraint(
+        rigid, constraints, support, pairs, bare, by_supports, rigid.modes @ free_motions([support], SUPPORTED)
+    )
 
 
 def resistance_of_supports(rigid: RigidModes, constraints: Constraints) -> NDArray[np.float64]:
