@@ -59,6 +59,7 @@ WRONG = {  # one entry of each table that cannot be met
     "rigid": '[[rigid]]\nbody = "nowhere"\n',
     "rotations": '[[rotations]]\non = "nowhere"\nangle = 1\ncentre = [0, 0]\n',
     "couplings": '[[couplings]]\nname = "c"\non = "nowhere"\n',
+    "connectors": '[[connectors]]\nname = "c"\nkind = "hinge"\non = "nowhere"\n',
     "preloads": '[[preloads]]\nname = "b"\nbody = "nowhere"\nforce = 1\n',
     "springs": '[[springs]]\nname = "s"\non = "nowhere"\nx = 1\n',
     "holds": '[[holds]]\non = "nowhere"\nx = 0\n',

@@ -1,4 +1,4 @@
-"""Pictures of job.md and probes.md: jobs after each other, bolts, couplings, springs, stops, holds, modes (matplotlib)."""
+"""Pictures of job.md and probes.md: jobs after each other, bolts, what joins and holds bodies, modes (matplotlib)."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from matplotlib.collections import PolyCollection
 
 import abut
 from abut.benchmarks import BENCHMARKS, joined, local_axes, started
+from abut.benchmarks.connectors import slider_crank, travel
 from abut.benchmarks.holds import LOAD, STIFFNESS, STRETCH
 from abut.benchmarks.preloads import sleeve
 from abut.io.vtu import write_vtu
@@ -116,6 +117,42 @@ def couplings() -> None:
         axes.axis("off")
     figure.colorbar(shown, ax=frames, shrink=0.7, label="stress along x")
     saved(figure, "couplings")
+
+
+def connectors() -> None:
+    """The crank of ``abut verify slider-crank`` over a whole turn: bars in four positions, travel and moment."""
+    whole = 2.0 * np.pi
+    *others, eye = slider_crank(whole).connectors
+    pushed = replace(eye, amplitude=abut.Amplitude(((0.0, 1.0),)))
+    times = abut.SolveOptions(times=tuple(np.linspace(0.0, 1.0, 25)[1:]))
+    model = replace(slider_crank(whole), connectors=[*others, pushed], solve=times)
+    solution = abut.solve(model)
+    mesh, plt = model.mesh, plots()
+    figure, (left, right) = plt.subplots(1, 2, figsize=(8.4, 2.9), width_ratios=(1.5, 1.0), constrained_layout=True)
+    for number, (name, color) in enumerate((("crank", RED), ("rod", GREY))):
+        cells = next(nodes[:, :4] for _, nodes, _ in mesh.cells_of(name))
+        for step in solution.steps[3:19:5]:
+            shape = (mesh.points + step.displacement)[cells]
+            left.add_collection(PolyCollection(shape, facecolors=color, edgecolors="none", alpha=0.35 + 0.2 * number))
+    for step in solution.steps[3:19:5]:
+        end = np.array([13.0 + step.connectors["eye"].motion["travel"], 0.0])
+        crank = 3.0 * np.array([np.cos(whole * step.factor), np.sin(whole * step.factor)])
+        left.plot(*np.array([np.zeros(2), crank, end]).T, color="black", lw=0.8, marker="o", ms=4)
+    left.axhline(0.0, color=GREY, lw=0.6, zorder=0)
+    left.set_xlim(-4.2, 14.2)
+    left.set_ylim(-4.2, 4.2)
+    left.set_aspect("equal")
+    left.axis("off")
+    angles = np.linspace(0.0, whole, 200)
+    steps = [whole * step.factor for step in solution.steps]
+    joints = [step.connectors for step in solution.steps]
+    right.plot(steps, [j["eye"].motion["travel"] for j in joints], "o", color=RED, ms=3, label="travel of the eye")
+    right.plot(steps, [j["axle"].drive / 5.0 for j in joints], "s", color=GREY, ms=3, label="moment / force")
+    for curve in travel(angles):
+        right.plot(angles, curve, color="black", lw=0.8, ls="--")
+    right.set_xlabel("angle of the crank")
+    right.legend(frameon=False, fontsize=8)
+    saved(figure, "connectors")
 
 
 def springs() -> None:
@@ -300,7 +337,7 @@ def sectors() -> None:
     saved(figure, "sectors")
 
 
-PICTURES = (sectors, fields, lever, probes, start, bolt, couplings, springs, stops, holds, modes)
+PICTURES = (sectors, fields, lever, probes, start, bolt, couplings, connectors, springs, stops, holds, modes)
 
 if __name__ == "__main__":
     for draw in PICTURES:

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
         BodyForce,
         Buckling,
         Centrifugal,
+        Connector,
         Contact,
         Coupling,
         Equation,
@@ -91,8 +92,9 @@ _HOME = {  # of public names that do not come from abut.model
 
 __all__ = [
     "AbutError", "Amplitude", "Anisotropic", "ArrudaBoyce", "Axes", "Beam", "BeamForces", "BodyForce", "Buckling",
-    "Centrifugal", "Contact", "ConvergenceError", "Coupling", "Equation", "Force", "FoundContact", "Frequencies", "Gravity",
-    "Hencky", "Hold", "InputError", "Integration", "LinearElastic", "LoadFactor", "Mesh", "MidForce", "MidSupport",
+    "Centrifugal", "Connector", "Contact", "ConvergenceError", "Coupling", "Equation", "Force", "FoundContact",
+    "Frequencies", "Gravity", "Hencky", "Hold", "InputError", "Integration", "LinearElastic", "LoadFactor", "Mesh",
+    "MidForce", "MidSupport",
     "MidSurface", "Model", "Moment", "MooneyRivlin", "NeoHooke", "NodalForce", "Ogden", "Orthotropic", "Output",
     "OverTemperature", "Penetration", "Plastic", "Preload", "Pressure", "PressureOverclosure", "Probe", "Removal",
     "ResultField", "Rigid", "Rotation", "Sector", "Sectors", "Shell", "SingularModelError", "Solid", "Solution",

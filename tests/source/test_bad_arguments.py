@@ -31,7 +31,7 @@ RESULTS = {
 }  # abut makes these
 LISTS = (
     "solids", "supports", "loads", "contacts", "equations", "rigid", "probes", "rotations", "couplings", "preloads",
-    "springs", "holds", "penetrations",
+    "springs", "holds", "penetrations", "connectors",
 )  # fmt: skip
 
 BLOCKS = {"a": make.rectangle([0, 2], [0, 1], cells=[2, 1]), "b": make.rectangle([0, 2], [1, 2], cells=[2, 1])}
@@ -92,6 +92,7 @@ VALID: dict[str, tuple[dict[str, Any], Callable[[Any], object]]] = {  # argument
     "Penetration": ({"contact": "c", "source": "a.top", "value": 1.0}, within("penetrations")),
     "Preload": ({"name": "p", "surface": "b.left", "force": 1.0}, within("preloads")),
     "Pressure": ({"on": "b.right", "value": 1.0}, within("loads")),
+    "Connector": ({"name": "c", "kind": "hinge", "on": "a"}, kept),
     "PressureOverclosure": ({"points": [(0, 0), (1, 1)]}, kept),
     "Probe": ({"name": "p", "at": (0.0, 0.0)}, within("probes")),
     "Rigid": ({"body": "a"}, within("rigid")),

@@ -27,7 +27,8 @@ def assembled_bodies(
     know."""
     if team is not None and (more := [field.name for field in model.dofs.fields[1:]]):
         names = ", ".join(f"'{name}'" for name in more)
-        raise InputError(f"physics: fields beside displacements ({names}) are solved on one process; start one only")
+        what = "physics" if model.physics else "connectors"
+        raise InputError(f"{what}: fields beside displacements ({names}) are solved on one process; start one only")
     if team is not None and model.removals:
         raise InputError("removals: bodies that go and come are solved on one process; start one only")
     if team is None:
@@ -45,7 +46,7 @@ def assembled_bodies(
 
 def solver_kind(problem: ContactProblem, team: Team | None) -> str:
     """ "direct" or "amg": what the user asked for, or what size and abilities of the solvers suggest. Raises InputError."""
-    if problem.model.physics or problem.model.removals:
+    if problem.model.physics or problem.model.connectors or problem.model.removals:
         return "direct"
     if team is None:
         return choose(problem.model.solve.linear, problem)

@@ -36,6 +36,10 @@ def check_modes(model: Model, team: bool) -> None:
             )
         if isinstance(wanted, Frequencies):
             densities(model)
+    if model.connectors:
+        raise InputError(
+            "modes: frequencies and buckling loads of assemblies with connectors are not known; leave one out"
+        )
     if model.physics:
         raise InputError("modes: frequencies and buckling loads are those of displacements alone; leave physics out")
     if model.finite and any(isinstance(wanted, Buckling) for wanted in model.modes):

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.analysis.certificate import Surroundings
+from abut.analysis.connectors import connector_results
 from abut.analysis.contact_results import PairState, contact_result
 from abut.analysis.covered import covered, whole_supports
 from abut.analysis.energy import Acting, energy, pressing, tractions
@@ -40,6 +41,7 @@ from abut.nonlinear.settings import DEFAULT
 from abut.problem.assembly import Assembled
 from abut.problem.balance import Balance
 from abut.problem.body_terms import heated
+from abut.problem.connectors import Connectors
 from abut.problem.constraints import Constraints
 from abut.problem.follower_loads import FollowerLoads
 from abut.problem.held_motions import HeldMotions, held_force
@@ -65,10 +67,10 @@ Acted = Acting | FiniteActing | None  # what acts at the end of a step
 class _End:
     """A model at the end of a load step. displacement, internal, loads, reaction: (dim n_points,) without rigid motions on
     springs, forces of stresses, of loads, of supports and links; following: those of loads that follow the deformation,
-    and of other physics; locked, sprung: of preloads that are locked, of springs and of what holds neutral motions; held:
-    of supports that come and go, part of the reaction; pressures: (n,) of each pair; cycling: (n,) multipliers that keep
-    changing; supports: of each pair int H_k over all of the deformed contactor, (n_functions,), where it may meet the
-    target anywhere, else None."""
+    and of other physics; locked, sprung: of preloads that are locked, of springs, connectors and what holds neutral
+    motions; held: of supports that come and go, part of the reaction; pressures: (n,) of each pair; cycling: (n,)
+    multipliers that keep changing; supports: of each pair int H_k over all of the deformed contactor, (n_functions,), where
+    it may meet the target anywhere, else None."""
 
     problem: ContactProblem
     balance: Balance
@@ -153,6 +155,7 @@ def step_result(
         flow=end.flow,
         preloads=_preloads(end, linked),
         springs=_springs(end),
+        connectors=connector_results(problem, state),
         nodal_reaction=end.reaction.reshape(-1, model.dim),
     )
     return step, acting
@@ -196,8 +199,9 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
     for term in problem.terms:
         if isinstance(term, Springs):
             sprung -= term.evaluate(motion, motion).force
-    if HeldMotions.name in balance.forces:
-        sprung -= balance.forces[HeldMotions.name]
+    for name in (HeldMotions.name, Connectors.name):
+        if name in balance.forces:
+            sprung -= balance.forces[name][: len(sprung)]
     held = -balance.forces.get(Holds.name, np.zeros_like(displacement))
     loads = assembled.loaded.forces @ balance.factors + following + locked + sprung
     reaction = internal - loads - contact_force

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abut.benchmarks import (
     beam,
+    connectors,
     contrast,
     convergence,
     finite_beams,
@@ -80,6 +81,7 @@ BENCHMARKS: dict[str, Benchmark] = {
         *removals.BENCHMARKS,
         *started.BENCHMARKS,
         *joined.BENCHMARKS,
+        *connectors.BENCHMARKS,
         *modes.BENCHMARKS,
         *mapped.BENCHMARKS,
         *penetration.BENCHMARKS,

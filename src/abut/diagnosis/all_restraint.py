@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from abut.model import Model
+from abut.problem.connectors import Connectors
 from abut.problem.constraints import Constraints
 from abut.problem.holds import Holds
 from abut.problem.pair import Pair
@@ -13,5 +14,6 @@ from abut.problem.springs import Springs
 
 
 def all_restraint(model: Model, constraints: Constraints, pairs: Sequence[Pair]) -> Restraint:
-    """Of supports and ``pairs``, helped by springs and holds, as a run has it."""
-    return helped(restraint(model.mesh, constraints, pairs), (Springs.of(model), Holds.of(model)))
+    """Of supports and ``pairs``, helped by springs, holds and connectors, as a run has it."""
+    joined = Connectors.of(model, constraints.bodies)
+    return helped(restraint(model.mesh, constraints, pairs), (Springs.of(model), Holds.of(model), joined))

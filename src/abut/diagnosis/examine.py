@@ -23,6 +23,7 @@ from abut.diagnosis.units import units
 from abut.errors import AbutError, InputError
 from abut.mesh.exterior import exterior
 from abut.model import Contact, Model
+from abut.problem.assembly import connected
 from abut.problem.constraints import Constraints, supports
 from abut.problem.contact_pairs import pair
 from abut.problem.finite_pairs import finite_pair
@@ -56,6 +57,11 @@ def check(model: Model) -> Report:
         supported = supports(model)
     except AbutError as error:
         findings.append(from_error(error, "supports"))
+        return Report(in_order([*findings, *doubts]))
+    try:
+        connected(model, supported)
+    except AbutError as error:
+        findings.append(from_error(error, "connectors"))
         return Report(in_order([*findings, *doubts]))
     built, about = _pairs(model, supported)
     findings += about

@@ -14,6 +14,7 @@ from abut.diagnosis.finding import Finding, Motion, from_error
 from abut.errors import SingularModelError
 from abut.model import Model
 from abut.model.conditions import weights
+from abut.problem.connectors import Connectors
 from abut.problem.constraints import Constraints
 from abut.problem.free_modes import floats_of, free_mode_springs
 from abut.problem.held_motions import neutral_in
@@ -21,6 +22,7 @@ from abut.problem.loads import loads
 from abut.problem.pair import Pair
 from abut.problem.restraint import Restraint, require_held
 
+LOOSE = "if it matters, give the connector a stiffness, limits or a motion"
 SHOWN = 0.1  # size of a motion over that of its body, for the eye
 
 
@@ -57,7 +59,10 @@ def _rub(pairs: Sequence[Pair]) -> str:
 def _unheld(model: Model, restrained: Restraint) -> list[Finding]:
     """An error for an unconstrained mode on which loads do work; else advice for each free mode."""
     ends, constraints = loads(model).at_ends(model), restrained.constraints
+    joined = Connectors.of(model, constraints.bodies)
     try:
+        if joined is not None:
+            joined.require_held(restrained, ends)
         unit = sp.identity(constraints.free.shape[1], format="csr")
         neutral, settled = neutral_in(model, restrained, ends)
         springs = free_mode_springs(
@@ -67,14 +72,18 @@ def _unheld(model: Model, restrained: Restraint) -> list[Finding]:
         require_held(restrained.helped_by(springs.gram), ends, factors)
     except SingularModelError as error:
         return [from_error(error, "bodies")]
+    loose = [] if joined is None else joined.free_in(restrained)
     return [
-        Finding(
-            "advice",
-            "bodies",
-            text,
-            "if its position matters, add a support or a symmetry plane",
-        )
-        for text in springs.notes
+        *(Finding("advice", "connectors", f"nothing resists {text}", LOOSE) for text in loose),
+        *(
+            Finding(
+                "advice",
+                "bodies",
+                text,
+                "if its position matters, add a support or a symmetry plane",
+            )
+            for text in springs.notes
+        ),
     ]
 
 

@@ -46,6 +46,7 @@ def _line(model: Model, step: Part) -> str:
         "bodies": [_removal(removal, step) for removal in model.removals],
         "comes or goes": [_hold(hold, step) for hold in model.holds],
         "led": [_led(body, step) for body in (*model.rigid, *model.couplings, *model.rotations) if drives(body)],
+        "connectors": [_led(joint, step) for joint in model.connectors if drives(joint)],
         "loads": loads,
         "preloads": [_preload(preload, step) for preload in model.preloads],
         "contacts": [_contact(contact, step, model.opened.get(contact.name)) for contact in model.contacts],

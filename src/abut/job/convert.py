@@ -82,6 +82,7 @@ def job_table(model: Model, mesh: str, output: Output = EVERYTHING) -> Json:
         "rigid",
         "rotations",
         "couplings",
+        "connectors",
         "preloads",
         "springs",
         "holds",

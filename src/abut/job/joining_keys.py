@@ -25,6 +25,20 @@ JOINING: dict[str, dict[str, str]] = {
         "rz": "rotation about z (in 2D the only one); left out: free [radian]",
         "amplitudes": "of single components, { y = [...], rz = [...] }: pairs of time and factor; others follow amplitude",
     },
+    "ConnectorTable": {
+        "name": "a name of your choice, for results",
+        "kind": "hinge: turns about its axis; slider: travels along it; cylindrical: both; universal: about axis and axis2; "
+        "ball: turns all ways; slot: travels along the axis and turns all ways; in 2D hinge, slider, slot",
+        "on": "name of the rigid body or coupling; motions and forces are its own, relative to to",
+        "to": "another one, which the axis turns with; left out: the ground",
+        "at": "where the joint is, undeformed; left out: the reference of on [length]",
+        "axis": "direction of the axis, undeformed, of any length; none of a ball joint, nor of a hinge in 2D",
+        "axis2": "universal: axis on the side of on, perpendicular to axis",
+        "limits": "lower and upper limit of the free motion, which begins at 0; either may be inf [radian, or length]",
+        "motion": "prescribed free motion [radian, or length]",
+        "load": "moment or force along the free motion [force length, or force]",
+        "stiffness": "of a spring along the free motion, free of force at 0 [force length / radian, or force/length]",
+    },
     "SectorTable": {
         "side": "surface or node set: the side whose nodes move as their partners on the other one, turned by one sector",
         "other": "the other side, meshed alike",

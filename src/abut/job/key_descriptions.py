@@ -35,6 +35,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "sectors": "cyclic symmetry: one of alike sectors is modelled",
         "rigid": "bodies that move as a whole",
         "couplings": "points that move with a reference point, which carries forces and moments",
+        "connectors": "joints between reference points of rigid bodies and couplings: hinges, sliders and others",
         "preloads": "bolts that are tightened: sections of bodies whose sides are drawn together",
         "springs": "springs to the ground, between points, and beds under surfaces",
         "holds": "supports that come or go on the way",

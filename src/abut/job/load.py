@@ -32,6 +32,7 @@ from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
 from abut.model import (
     Buckling,
+    Connector,
     Coupling,
     Equation,
     Frequencies,
@@ -206,6 +207,7 @@ def _model(file: JobFile, folder: Path, refine: int, named: Named) -> tuple[Mode
             *(Coupling(**values(c, f"couplings[{i}]")) for i, c in enumerate(file.couplings)),
             *thin.thick.couplings,
         ],
+        connectors=[Connector(**values(c, f"connectors[{i}]")) for i, c in enumerate(file.connectors)],
         preloads=[Preload(**values(p, f"preloads[{i}]")) for i, p in enumerate(file.preloads)],
         springs=[Spring(**values(s, f"springs[{i}]")) for i, s in enumerate(file.springs)],
         holds=[Hold(**values(h, f"holds[{i}]")) for i, h in enumerate(file.holds)],

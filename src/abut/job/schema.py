@@ -13,7 +13,8 @@ from abut.job.load_tables import LOAD
 from abut.job.material_tables import MATERIAL, AxesTable
 from abut.job.run_tables import BUCKLING, FREQUENCIES, SOLVE, OutputTable, ResultFieldTable, StartTable, StepTable
 from abut.job.table import Number, OneOf, Points, Table, Time, Varying
-from abut.model import Hold, Penetration, Preload, Removal, Rotation, Spring
+from abut.model import Connector, Hold, Penetration, Preload, Removal, Rotation, Spring
+from abut.model.connector import KINDS as CONNECTORS
 from abut.model.contact import GEOMETRIES, KINDS, LAWS, METHODS, PRESSURES, RULES, Contact, Integration
 from abut.model.coupling import KINDS as COUPLINGS
 from abut.model.coupling import Coupling
@@ -152,6 +153,9 @@ Law = Annotated[
 ]
 
 
+Limits = Annotated[Any, WithJsonSchema({"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2})]
+
+
 Led = Annotated[Any, WithJsonSchema({"anyOf": [{"type": "number"}, {"const": STAY}]})]
 
 
@@ -165,6 +169,11 @@ SPRING = table_of(
     Spring,
     dict.fromkeys(("x", "y", "z", "normal", "along"), Law),
     "springs to the ground, between points, or under a surface",
+)
+CONNECTOR = table_of(
+    Connector,
+    {"kind": Annotated[str, OneOf(CONNECTORS)], "limits": Limits | None},
+    "a joint between two reference points, or one and the ground",
 )
 HOLD = table_of(
     Hold,
@@ -249,6 +258,7 @@ class JobFile(Table):
     rotations: list[Annotated[Table, Of(ROTATION)]] = []
     couplings: list[CouplingTable] = []
     preloads: list[Annotated[Table, Of(PRELOAD)]] = []
+    connectors: list[Annotated[Table, Of(CONNECTOR)]] = []
     springs: list[Annotated[Table, Of(SPRING)]] = []
     holds: list[Annotated[Table, Of(HOLD)]] = []
     stops: list[Annotated[Table, Of(STOP)]] = []

@@ -144,7 +144,12 @@ def _changes(model: Model) -> bool:
     (``abut.problem.assembly``)."""
     springs = Springs.of(model)
     drawn = any(preload.force is not None for preload in model.preloads)
-    return not model.linear_bodies or drawn or bool(model.physics) or not (springs is None or springs.constant)
+    return (
+        not model.linear_bodies
+        or drawn
+        or bool(model.physics or model.connectors)
+        or not (springs is None or springs.constant)
+    )
 
 
 def preparing(size: Stiffness, solver: str) -> float:

@@ -3,6 +3,7 @@
 from abut.axes import Axes
 from abut.model.body_forces import BodyForce, Centrifugal, Gravity, Load
 from abut.model.conditions import Amplitude, Equation, History, Rigid, Support, Term
+from abut.model.connector import Connector
 from abut.model.contact import LAWS, METHODS, PRESSURES, RULES, Contact, Integration
 from abut.model.coupling import Coupling
 from abut.model.hold import Hold
@@ -20,7 +21,7 @@ from abut.model.spring import Spring
 
 __all__ = [
     "LAWS", "METHODS", "PLANES", "PRESSURES", "RULES", "Amplitude", "Axes", "BodyForce", "Buckling", "Centrifugal",
-    "Contact", "Coupling", "Equation", "Force", "Frequencies", "Gravity", "History", "Hold", "Integration", "Load", "Model",
-    "Moment", "NodalForce", "Penetration", "Preload", "Pressure", "Probe", "Removal", "Rigid", "Rotation", "Solid",
-    "SolveOptions", "Spring", "Support", "Temperature", "Term", "Traction",
+    "Connector", "Contact", "Coupling", "Equation", "Force", "Frequencies", "Gravity", "History", "Hold", "Integration",
+    "Load", "Model", "Moment", "NodalForce", "Penetration", "Preload", "Pressure", "Probe", "Removal", "Rigid",
+    "Rotation", "Solid", "SolveOptions", "Spring", "Support", "Temperature", "Term", "Traction",
 ]  # fmt: skip

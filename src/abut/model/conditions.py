@@ -96,7 +96,7 @@ def check_amplitude(value: object, where: str) -> None:
 
 def drives(condition: Any) -> bool:
     """Whether a support, load, equation or rigid body prescribes anything but zero; a function of position is taken to."""
-    names = ("value", "speed", "normal", "force", "shortening", *COMPONENTS, *TURNS)
+    names = ("value", "speed", "normal", "force", "shortening", "motion", "load", *COMPONENTS, *TURNS)
     values = [getattr(condition, name, None) for name in names]
     given = any(value is not None and (callable(value) or bool(np.any(value))) for value in values)
     histories = [condition.amplitude, *getattr(condition, "amplitudes", {}).values()]

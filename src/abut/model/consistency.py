@@ -155,3 +155,14 @@ def check_equations(mesh: Mesh, equations: Sequence[Equation]) -> None:
                 raise InputError(f"{where}.on: no point {term.on}; the mesh has {len(mesh.points)}, from 0")
             if term.component not in COMPONENTS[: mesh.dim]:
                 raise InputError(f"{where}.component: the model is 2D; z does not exist")
+
+
+def check_axis(mesh: Mesh) -> None:
+    """Raise InputError for points of an axisymmetric mesh beyond its axis."""
+    radius = mesh.points[:, 0]
+    bad = np.flatnonzero(radius < -1e-9 * np.ptp(mesh.points, axis=0).max())
+    if len(bad):
+        raise InputError(
+            f"model.plane: axisymmetric needs radii x >= 0, but {len(bad)} points lie at x < 0 (point {bad[0]} at "
+            f"{mesh.points[bad[0]].tolist()}); mesh one half of the section only"
+        )

@@ -35,7 +35,8 @@ from abut.mesh.mesh import Mesh
 from abut.mesh.record import MeshRecord
 from abut.model.body_forces import Load
 from abut.model.conditions import Equation, History, Rigid, Support
-from abut.model.consistency import check_equations, check_filled, check_loads, check_rigid, check_supports
+from abut.model.connector import Connector, Multipliers, check_connectors
+from abut.model.consistency import check_axis, check_equations, check_filled, check_loads, check_rigid, check_supports
 from abut.model.contact import GEOMETRIES, Contact
 from abut.model.coupling import Coupling, check_couplings, moving_points
 from abut.model.hold import Hold, check_holds
@@ -61,7 +62,7 @@ RECORDS: dict[str, tuple[type, ...]] = {  # what the lists of a model are of
     "solids": (Solid,), "supports": (Support,), "loads": get_args(Load), "contacts": (Contact,), "equations": (Equation,),
     "rigid": (Rigid,), "probes": (Probe,), "rotations": (Rotation,), "couplings": (Coupling,), "preloads": (Preload,),
     "springs": (Spring,), "holds": (Hold,), "penetrations": (Penetration,), "modes": (Frequencies, Buckling),
-    "removals": (Removal,),
+    "removals": (Removal,), "connectors": (Connector,),
 }  # fmt: skip
 
 
@@ -110,8 +111,9 @@ class Model:
     physics : sequence of abut.model.physics.Physics
         Terms of one's own in the balance, with rates if wanted; fields beside displacements, on one process. By direct
         solvers.
-    modes, removals : sequences of Frequencies and Buckling, of Removal
-        What is found about the state at the end of the last step, on one process; bodies that go, and may come back.
+    modes, removals, connectors : sequences of Frequencies and Buckling, of Removal, of Connector
+        What is found about the state at the end of the last step, on one process; bodies that go, and may come back;
+        joints of rigid bodies and couplings.
 
     Raises
     ------
@@ -157,6 +159,7 @@ class Model:
     physics: Sequence[Physics] = ()
     modes: Sequence[Frequencies | Buckling] = ()
     removals: Sequence[Removal] = ()
+    connectors: Sequence[Connector] = ()
 
     def __post_init__(self) -> None:
         checks.instance(self.mesh, MeshRecord, "model: mesh", "a mesh (abut.Mesh)")
@@ -177,7 +180,9 @@ class Model:
         check_springs(self.mesh, self.springs)
         object.__setattr__(self, "holds", check_holds(self.mesh, self.holds))
         object.__setattr__(self, "penetrations", check_penetrations(self.mesh, self.penetrations, self.contacts))
-        check_removals(self.mesh, self.removals, self.materials, self.preloads, [*self.physics, *self.modes])
+        check_connectors(self.mesh, self.connectors, self.referenced, self.finite)
+        others = (*self.physics, *self.modes, *self.connectors)
+        check_removals(self.mesh, self.removals, self.materials, self.preloads, others)
         object.__setattr__(self, "loads", loads_while_there(self.mesh, self.loads, self.removals, self.materials))
         self.opened  # noqa: B018 - sides of contacts go as a whole
         check_kinematics(self.kinematics, self.solids)
@@ -226,7 +231,7 @@ class Model:
     @cached_property
     def dofs(self) -> Dofs:
         """Where the values of all fields stand."""
-        return dofs_of(self.mesh, self.physics)
+        return dofs_of(self.mesh, [*self.physics, Multipliers(self.connectors)])
 
     @property
     def linear_bodies(self) -> bool:
@@ -244,6 +249,7 @@ class Model:
         """The different histories of everything prescribed, the ramp first."""
         given = (*self.supports, *self.loads, *self.equations, *self.rigid, *self.contacts, *self.rotations)
         amplitudes = [item.amplitude for item in (*given, *self.preloads, *self.couplings, *self.penetrations)]
+        amplitudes += [connector.amplitude for connector in self.connectors]
         friction = [contact.friction_amplitude for contact in self.contacts]
         of_rigid = (history for body in self.referenced for history in body.amplitudes.values())
         others = (history for item in self.physics for history in item.amplitudes)
@@ -342,15 +348,8 @@ class Model:
     def _check_axis(self) -> None:
         axisymmetric = self.plane == "axisymmetric"
         object.__setattr__(self, "mesh", replace(self.mesh, axisymmetric=axisymmetric))
-        if not axisymmetric:
-            return
-        radius = self.mesh.points[:, 0]
-        bad = np.flatnonzero(radius < -1e-9 * np.ptp(self.mesh.points, axis=0).max())
-        if len(bad):
-            raise InputError(
-                f"model.plane: axisymmetric needs radii x >= 0, but {len(bad)} points lie at x < 0 (point {bad[0]} at "
-                f"{self.mesh.points[bad[0]].tolist()}); mesh one half of the section only"
-            )
+        if axisymmetric:
+            check_axis(self.mesh)
 
     def _check_solids(self) -> None:
         seen: set[str] = set()

@@ -52,7 +52,15 @@ class Physics(Protocol):
         ...
 
 
-def dofs_of(mesh: Mesh, physics: Sequence[Physics]) -> Dofs:
+class HasFields(Protocol):
+    """What adds fields."""
+
+    def fields(self, mesh: Mesh) -> Sequence[Field]:
+        """What it adds, with names of their own."""
+        ...
+
+
+def dofs_of(mesh: Mesh, physics: Sequence[HasFields]) -> Dofs:
     """Displacements, then all other fields. Raises InputError for a name that is there twice."""
     every = [Field(DISPLACEMENT, *mesh.points.shape)]
     for i, item in enumerate(physics):

@@ -136,8 +136,8 @@ def check_removals(
     preloads: Sequence[Preload],
     others: Sequence[Any],
 ) -> None:
-    """Raise InputError for bodies that cannot go, and times at which one goes twice. materials: by body; others: physics and
-    modes, which know of no removals."""
+    """Raise InputError for bodies that cannot go, and times at which one goes twice. materials: by body; others: physics,
+    modes and connectors, which know of no removals."""
     for i, removal in enumerate(removals):
         where = f"removals[{i}]"
         checks.known(removal.body, mesh.bodies, f"{where}.body", "body")
@@ -154,7 +154,7 @@ def check_removals(
             raise InputError(f"{where}.body: '{removal.body}' has a preload; bolts that are tightened stay")
     if removals and others:
         raise InputError(
-            "removals: bodies go and come with displacements alone; leave physics, frequencies and buckling out"
+            "removals: bodies go and come with displacements alone; leave physics, connectors, frequencies and buckling out"
         )
 
 

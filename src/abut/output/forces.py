@@ -1,4 +1,4 @@
-"""forces.csv: force over displacement of every support, coupling, rigid body, spring and preload, step by step."""
+"""forces.csv: force over displacement of supports, couplings, rigid bodies, connectors, springs, preloads, step by step."""
 
 from __future__ import annotations
 
@@ -16,23 +16,27 @@ FILE = "forces.csv"
 
 
 def table(solution: Solution) -> str:
-    """A row for each step and each support, coupling, rigid body, spring and preload: motion, and force (moment) that holds
-    or moves it.
+    """A row for each step and each support, coupling, rigid body, connector, spring and preload: motion, and force (moment)
+    that holds or moves it.
 
     Of a support (surface, node set or body) the displacement is the mean of its nodes, and the force the sum of theirs; of
     couplings and rigid bodies both are those of the reference. Rotations and moments of supports are empty. Free components
     have no force. Of a preload the displacement is its shortening along the normal of the section, force and moment what the
-    side before the section exerts on that beyond it."""
+    side before the section exerts on that beyond it. Of a connector there are its free motions, force and moment about the
+    joint on the body ``on``, and what its stop and drive do along the first motion."""
     dim = solution.model.dim
     axes, turns = "xyz"[:dim], "z" if dim == 2 else "xyz"
     head = ["step", "factor", "converged", "kind", "name"]
     head += [f"{name}_{axis}" for name in ("displacement", "force") for axis in axes]
     if solution.model.referenced or solution.model.preloads:
         head += [f"{name}_{axis}" for name in ("rotation", "moment") for axis in turns]
+    free = list(dict.fromkeys(name for joint in solution.model.connectors for name in joint.motions))
+    joints = [*free, "stop", "drive"] if solution.model.connectors else []
+    head += joints
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
     rows.writerow(head)
-    empty = [""] * (len(head) - 5 - 2 * dim)
+    empty, beside = [""] * (len(head) - 5 - 2 * dim), [""] * len(joints)
     nodes = {name: solution.model.mesh.nodes_of(name) for name in solution.steps[0].reactions}
     for step in solution.steps:
         for name, own in nodes.items():
@@ -42,7 +46,12 @@ def table(solution: Solution) -> str:
             kind, own_name = ("coupling" if isinstance(body, Coupling) else "rigid body"), body.name
             result = step.rigid[own_name]
             parts = (result.displacement, result.force, result.rotation, result.moment)
-            rows.writerow([*_step(step), kind, own_name, *np.concatenate(parts).tolist()])
+            rows.writerow([*_step(step), kind, own_name, *np.concatenate(parts).tolist(), *beside])
+        for name, joint in step.connectors.items():
+            moved = [joint.motion.get(what, "") for what in free]
+            exerted = [*joint.force.tolist(), *[""] * len(turns), *joint.moment.tolist()]
+            along = ["" if value is None else value for value in (joint.stop, joint.drive)]
+            rows.writerow([*_step(step), "connector", name, *[""] * dim, *exerted, *moved, *along])
         for spring in solution.model.springs:
             motion = step.displacement[solution.model.mesh.nodes_of(spring.on)].mean(axis=0)
             rows.writerow(
@@ -51,7 +60,7 @@ def table(solution: Solution) -> str:
         for section in sections(solution.model.mesh, solution.model.preloads):
             carried = step.preloads[section.preload.name]
             values = [*(carried.shortening * section.normal).tolist(), *carried.force.tolist(), *[""] * len(turns)]
-            rows.writerow([*_step(step), "preload", section.preload.name, *values, *carried.moment.tolist()])
+            rows.writerow([*_step(step), "preload", section.preload.name, *values, *carried.moment.tolist(), *beside])
     return text.getvalue()
 
 

@@ -14,7 +14,8 @@ VERDICT = {"fail": 0, "warn": 1}  # the worst counts; others pass
 
 def key_results(solution: Solution) -> dict[str, float]:
     """At the end of the last step: of each contact force, largest pressure and area; the tension of each preload; the force
-    of each support; peaks of each probe; the largest displacement. What does not exist is left out."""
+    of each support; force and free motions of each connector; peaks of each probe; the largest displacement. What does not
+    exist is left out."""
     step = solution.steps[-1]
     found: dict[str, float] = {}
     for contact in step.contacts:
@@ -23,6 +24,9 @@ def key_results(solution: Solution) -> dict[str, float]:
         found[f"{contact.name}: area"] = contact.area
     found |= {f"{name}: tension": result.tension for name, result in step.preloads.items()}
     found |= {f"{name}: reaction": float(np.linalg.norm(force)) for name, force in step.reactions.items()}
+    for name, joint in step.connectors.items():
+        found[f"{name}: force"] = float(np.linalg.norm(joint.force))
+        found |= {f"{name}: {what}": value for what, value in joint.motion.items()}
     for result in step.probes:
         found |= {f"{result.name}: {name}": value for name, value in peaks(result).items() if value is not None}
     found["largest displacement"] = float(np.linalg.norm(step.displacement, axis=1).max())

@@ -37,7 +37,7 @@ from abut.output.lock import Lock
 from abut.output.modes import modes_summary, names, write_modes
 from abut.output.options import EVERYTHING, Output, single
 from abut.report import Origin, write_report
-from abut.solution import PenetrationResult, PreloadResult, Solution, Step
+from abut.solution import ConnectorResult, PenetrationResult, PreloadResult, Solution, Step
 from abut.solution.grids import contact_grid
 from abut.solution.load_factor import load_factors
 from abut.types import Json
@@ -291,16 +291,17 @@ def _step_summary(step: Step) -> Json:
 
 
 def _carried(step: Step) -> Json:
-    """What preloads, springs and fluids exert, where there are any."""
+    """What preloads, connectors, springs and fluids exert, where there are any."""
     every = {
         "preloads": {name: _numbers(result) for name, result in step.preloads.items()},
+        "connectors": {name: _numbers(result) for name, result in step.connectors.items()},
         "springs": {name: force.tolist() for name, force in step.springs.items()},
         "penetrations": {name: _numbers(result) for name, result in step.penetrations.items()},
     }
     return {name: results for name, results in every.items() if results}
 
 
-def _numbers(result: PreloadResult | PenetrationResult) -> Json:
+def _numbers(result: PreloadResult | PenetrationResult | ConnectorResult) -> Json:
     return {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in vars(result).items()}
 
 

@@ -14,7 +14,8 @@ from abut.solution import Saved
 
 # what may differ: what acts, whose values the balance of every step taken over compares, and the ways of all over time
 MAY_CHANGE = re.compile(r"(loads|supports|modes)\b|.*\bamplitude\b")
-REFUSED = ("equations", "rigid", "rotations", "couplings", "preloads", "holds", "removals", "penetrations", "physics")
+REFUSED = ("equations", "rigid", "rotations", "couplings", "preloads", "holds", "removals", "penetrations", "connectors",
+           "physics")  # fmt: skip
 
 
 def load_start(directory: Path, model: Model, share: float) -> list[Saved]:

@@ -17,6 +17,7 @@ from abut.problem.backend import Backend
 from abut.problem.body_terms import Bodies, DeadLoads, LinearBodies, SolidBodies
 from abut.problem.changing_bodies import ChangingBodies
 from abut.problem.clock import Clock
+from abut.problem.connectors import Connectors
 from abut.problem.constraints import Constraints, supports
 from abut.problem.contact_pairs import pairs, reach_of
 from abut.problem.current import Current
@@ -34,11 +35,12 @@ from abut.problem.pair import Pair
 from abut.problem.penetrations import Penetrations
 from abut.problem.preloads import LockedPreloads
 from abut.problem.problem import ContactProblem
-from abut.problem.restraint import helped, require_balance, require_unmoved, restraint
+from abut.problem.restraint import Restraint, helped, require_balance, require_unmoved, restraint
 from abut.problem.springs import Springs
 from abut.problem.terms import Term
 from abut.problem.turning_ties import CurrentTie, turning_tie
 from abut.solution import Observer, Phase
+from abut.types import Array
 
 
 @dataclass(frozen=True)
@@ -77,9 +79,8 @@ def assemble(
         note(f"{idle.where}: {idle.what}, and does nothing there; {idle.cure}")
     clock.mark("interface")
     observe(Phase("checking for unconstrained rigid-body motions"))
-    passing = Holds.of(model)
-    restrained = helped(restraint(model.mesh, constraints, every), (sprung, passing))
-    ends = loaded.at_ends(model)
+    passing, ends = Holds.of(model), loaded.at_ends(model)
+    restrained, joined = _joined(model, helped(restraint(model.mesh, constraints, every), (sprung, passing)), ends)
     neutral, settled = neutral_in(model, restrained, ends)
     rigid, resisted = restrained.rigid, restrained.everything
     springs = free_mode_springs(rigid, resisted, constraints, reduced, ends, neutral, settled, floats_of(model))
@@ -94,10 +95,10 @@ def assemble(
     _check_finite(reduced.diagonal(), loaded.forces)
     bodies = _bodies(model, loaded, backend)
     fluids = Penetrations.of(model, every)
-    beside = [*_beside(model, constraints, loaded), *(term for term in (sprung, held, passing, fluids) if term)]
+    beside = [*_beside(model, constraints, loaded), *(term for term in (sprung, held, passing, fluids, joined) if term)]
     own = _own(model, [term.name for term in (bodies, *beside)])
     beside += own
-    affine = not (model.finite or model.physics) and _is_constant(model, [bodies, *beside])
+    affine = not (model.finite or model.physics or model.connectors) and _is_constant(model, [bodies, *beside])
     problem = ContactProblem(
         model=model,
         terms=(bodies, *beside),
@@ -117,6 +118,24 @@ def assemble(
     note(f"{reduced.shape[0]} free displacements, {sum(map(len, every))} multipliers")
     clock.mark("set-up")
     return Assembled(problem, bodies, loaded)
+
+
+def connected(model: Model, constraints: Constraints) -> Connectors | None:
+    """The connectors of a model, None without. Raises InputError and SingularModelError for those that cannot be."""
+    found = Connectors.of(model, constraints.bodies)
+    if found is not None:
+        found.require_independent(constraints, weights(model.histories, 0.0))
+    return found
+
+
+def _joined(model: Model, restrained: Restraint, ends: Sequence[Array]) -> tuple[Restraint, Connectors | None]:
+    """With what connectors resist, and these; restrained: by all else. Raises SingularModelError where loads move them."""
+    found = connected(model, restrained.constraints)
+    if found is None:
+        return restrained, None
+    found, both = found.beside(restrained), helped(restrained, (found,))
+    found.require_held(both, ends)
+    return both, found
 
 
 def _describe_cells(model: Model, note: Callable[[str], None]) -> None:

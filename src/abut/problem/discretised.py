@@ -83,12 +83,13 @@ class Discretised:
         self, shares: Sequence[Share], states: Sequence[State], stiffness: Operator
     ) -> NDArray[np.float64] | None:
         """(n_free,) what residuals are judged against, field by field, where there are others than displacements: the
-        largest force of a term, or what the largest values do; states: begin and end of the step."""
+        largest force of a term, what it gives for it, or what the largest values do; states: begin and end of the step."""
         others = self.constraints.others
         if others is None:
             return None
         n = others.dofs.size
-        largest = np.max([others.largest(added_up([share.force], n)) for share in shares], axis=0)
+        judged = [share.force if share.sizes is None else share.sizes for share in shares]
+        largest = np.max([others.largest(added_up([each], n)) for each in judged], axis=0)
         moved = np.max([others.largest(self.values(state)) for state in states], axis=0)
         unit = others.largest(others.whole(self.constraints.free) @ np.abs(stiffness.diagonal()))
         return np.maximum(largest, unit * moved)

@@ -28,6 +28,7 @@ from abut.model import (
 )
 from abut.model.conditions import weights
 from abut.model.mirror_planes import at_ends
+from abut.problem.joints import joint_loads
 from abut.problem.rigid_bodies import RigidBody, rigid_bodies
 from abut.problem.sections import preload_forces
 
@@ -36,7 +37,7 @@ from abut.problem.sections import preload_forces
 class Loads:
     """forces: (dim n_points, n_histories) nodal forces of loads and thermal strains; resultant: (dim, n_histories) of the
     loads; temperature: (n_points, n_histories) change at the nodes, without that of whole solids; following: (dim n_points,
-    n_histories) of loads that follow the deformation, before there is any, None where there are none."""
+    n_histories) of loads that follow the deformation and of connectors, before there is any, None where there are none."""
 
     forces: NDArray[np.float64]
     resultant: NDArray[np.float64]
@@ -55,7 +56,11 @@ def loads(model: Model) -> Loads:
     applied, temperature = applied_load(model), nodal_temperature(model)
     resultant = applied.reshape(-1, model.dim, applied.shape[1]).sum(axis=0)
     strained = strain_load(model, temperature) if model.linear_bodies else 0.0  # others: with the stresses
-    return Loads(applied + strained, resultant, temperature, applied_load(model, True) if followers(model) else None)
+    following = applied_load(model, True) if followers(model) else None
+    if model.connectors:
+        driving = joint_loads(model, rigid_bodies(model))
+        following = driving if following is None else following + driving
+    return Loads(applied + strained, resultant, temperature, following)
 
 
 def followers(model: Model) -> list[Load]:

@@ -49,13 +49,14 @@ class OtherFields:
 def other_fields(model: Model, n_moving: int) -> OtherFields | None:
     """Of a model, None without; n_moving: free displacements, whose unknowns come first. Raises InputError and
     SingularModelError for what is prescribed twice or nowhere."""
-    if not model.physics:
-        return None
     dofs = model.dofs
+    if not model.physics and len(dofs.fields) == 1:
+        return None
     first = dofs.range_of(DISPLACEMENT).stop
     by_factors = ("auto", "direct") if dofs.size > first else ("auto", "direct", "petsc")
     if model.solve.linear not in by_factors:
-        raise InputError(f'solve.linear: "{model.solve.linear}" knows displacements alone; physics needs "direct"')
+        what = "physics needs" if model.physics else "connectors need"
+        raise InputError(f'solve.linear: "{model.solve.linear}" knows displacements alone; {what} "direct"')
     prescribed = np.zeros((dofs.size - first, len(model.histories)))
     held = np.zeros(len(prescribed), dtype=bool)
     for i, item in enumerate(model.physics):

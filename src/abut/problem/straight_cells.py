@@ -22,7 +22,7 @@ ROUNDS = {2: 2, 3: 1}
 def rounds(model: Model, pairs: Sequence[Pair]) -> int:
     """How often each step of a problem whose stiffness is constant is solved once more: contact of bodies with such cells,
     at small displacements, without friction; else 0."""
-    beside = model.finite or model.physics or model.penetrations or model.removals
+    beside = model.finite or model.physics or model.connectors or model.penetrations or model.removals
     if beside or any(pair.frictional for pair in pairs):
         return 0
     straight = any(of_simplices(model.mesh, side).any() for pair in pairs for side in (pair.contactor, pair.target))

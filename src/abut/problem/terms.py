@@ -66,13 +66,15 @@ class Share:
     """A term's share of the balance of forces. force: (dim n_points,) on the left-hand side (loads are negative there), or
     (n_values,) of all fields; tangent: what reduces to the unknowns, over values as the force has them, None for none;
     history: as in ``Motion``, new; symmetric: the tangent; energy: elastic, of a term that knows it, not a number where a
-    material does not tell it."""
+    material does not tell it; sizes: as the force, what residuals of
+    other fields are judged against, None for the force itself."""
 
     force: Vector
     tangent: Tangent | None = None
     history: Mapping[str, Vector] = field(default_factory=dict)
     symmetric: bool = True
     energy: float | None = None
+    sizes: Vector | None = None
 
 
 class Term(Protocol):

@@ -1,14 +1,16 @@
-"""Tables of the report about what bolts, shells and beams carry and how far fluids have got, where there are any."""
+"""Tables of the report: what bolts, connectors, shells and beams carry and how far fluids have got, where there are any."""
 
 from __future__ import annotations
 
-from abut.report import penetrations, preloads, thin
+from abut.report import connectors, penetrations, preloads, thin
 from abut.solution import Solution
 
 
 def carried_tables(solution: Solution) -> list[tuple[list[str], list[list[str]], str]]:
     """Head, rows and title of each."""
     found = []
+    if solution.model.connectors:
+        found.append((connectors.HEAD, connectors.connector_rows(solution), "What connectors do"))
     if solution.model.preloads:
         found.append((preloads.HEAD, preloads.preload_rows(solution), "What preloads carry"))
         found.append(

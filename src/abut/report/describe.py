@@ -20,6 +20,7 @@ _GROUPS = (
     ("Rigid bodies", "rigid"),
     ("Rotations", "rotations"),
     ("Couplings", "couplings"),
+    ("Connectors", "connectors"),
     ("Preloads", "preloads"),
     ("Springs", "springs"),
     ("Supports that come or go", "holds"),

@@ -1,5 +1,6 @@
 """Results, as frozen records."""
 
+from abut.solution.connectors import ConnectorResult
 from abut.solution.contacts import Check, ContactResult, FrictionResult, PressureStatistics, Resultant
 from abut.solution.energy import Energy
 from abut.solution.flow import Flow
@@ -11,8 +12,7 @@ from abut.solution.records import Flips, OnStep, ProbeResult, RigidResult, Saved
 from abut.solution.state import History, Largest, State
 
 __all__ = [
-    "Check", "ContactResult", "Energy", "Flips", "Flow", "FrictionResult", "History", "Iteration", "Largest",
-    "ModesResult", "Observer", "OnStep", "PenetrationResult", "Phase", "PreloadResult", "PressureStatistics", "ProbeResult",
-    "Resultant",
-    "RigidResult", "Saved", "SavedPart", "Solution", "State", "Step",
+    "Check", "ConnectorResult", "ContactResult", "Energy", "Flips", "Flow", "FrictionResult", "History", "Iteration",
+    "Largest", "ModesResult", "Observer", "OnStep", "PenetrationResult", "Phase", "PreloadResult", "PressureStatistics",
+    "ProbeResult", "Resultant", "RigidResult", "Saved", "SavedPart", "Solution", "State", "Step",
 ]  # fmt: skip

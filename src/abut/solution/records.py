@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from abut.brief import NAMED, brief, listed, vector
 from abut.materials.invariants import von_mises
 from abut.model import Model
-from abut.model.conditions import drives
 from abut.model.locking import LOCKED, STIFF, locking
-from abut.model.offset import smallest_offset
 from abut.solution.apart import bodies_apart
+from abut.solution.connectors import ConnectorResult
 from abut.solution.contacts import Check, ContactResult, worst
+from abut.solution.driven import driven, forces_act
 from abut.solution.energy import Energy
 from abut.solution.flow import Flow
 from abut.solution.hourglass import hourglass
@@ -130,6 +130,7 @@ class Step:
     preloads: Mapping[str, PreloadResult] = field(default_factory=dict)
     springs: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)  # force (dim,) on what each is on
     penetrations: Mapping[str, PenetrationResult] = field(default_factory=dict)
+    connectors: Mapping[str, ConnectorResult] = field(default_factory=dict)
     nodal_reaction: NDArray[np.float64] | None = None  # (n_points, dim) of supports and links
 
     def __repr__(self) -> str:
@@ -298,9 +299,9 @@ class Solution:
     def certificate(self) -> tuple[Check, ...]:
         """Every check of every contact, each at its worst over the steps, and the balance of the whole model."""
         lines: dict[tuple[str, str], list[Check]] = {}
-        idle = _driven(self.model) and not any(step.strained or step.grown for step in self.steps)
+        idle = driven(self.model) and not any(step.strained or step.grown for step in self.steps)
         response = Check("", "response", float(idle), RESPONSE, "1 where something is prescribed and nothing deforms")
-        loaded = _loaded(self.model)
+        loaded = forces_act(self.model)
         most = max((step.energy.size for step in self.steps if step.energy is not None), default=0.0)
         for step in self.steps:
             balance = Check(
@@ -382,18 +383,6 @@ class Solution:
         import abut
 
         return abut.plot(self, what, **options)
-
-
-def _driven(model: Model) -> bool:
-    """Whether anything is prescribed that should have an effect: loads, motions, heat, interference."""
-    given = (*model.supports, *model.loads, *model.equations, *model.rigid, *model.couplings)
-    hot = any(solid.temperature for solid in model.solids)
-    return hot or any(map(drives, given)) or any(smallest_offset(contact) < 0.0 for contact in model.contacts)
-
-
-def _loaded(model: Model) -> bool:
-    """Whether forces may act, so that what contacts carry is not due to motions, heat and interference alone."""
-    return not model.contacts or bool(model.loads or model.preloads or model.rigid or model.couplings or model.physics)
 
 
 OnStep = Callable[[Solution, Saved], None]  # gets the solution so far after each converged step, and what restarts it
