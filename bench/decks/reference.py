@@ -41,7 +41,7 @@ PROCEDURES = (
     "FREQUENCY", "DYNAMIC", "MODAL DYNAMIC", "HEAT TRANSFER", "COUPLED TEMPERATURE-DISPLACEMENT",
     "UNCOUPLED TEMPERATURE-DISPLACEMENT", "STEADY STATE DYNAMICS", "BUCKLE", "COMPLEX FREQUENCY",
 )  # fmt: skip
-EXPANDED = ("CPS", "CPE", "CAX", "S3", "S4", "S6", "S8", "B3", "T3D")  # whose own nodes "OUTPUT=2D" has
+EXPANDED = ("CPS", "CPE", "CAX", "S3", "S4", "S6", "S8", "M3D", "B3", "T3D")  # whose own nodes "OUTPUT=2D" has
 
 
 class NoReference(Exception):

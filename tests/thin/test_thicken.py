@@ -272,3 +272,34 @@ def test_tied_by_its_edge(tmp_path: Path) -> None:
     points = solution.model.mesh.points
     assert solution.displacement[points[:, 2] > 1.9][:, 2] == pytest.approx(10.0 / 1000.0, rel=1e-3)
     assert abs(solution.contacts[0].force[2]) == pytest.approx(10.0 * 0.8 * 0.2, rel=1e-6)
+
+
+@pytest.mark.parametrize("kind", ["quad4", "tri3"])
+def test_membrane_carries_no_moments(kind: str, tmp_path: Path) -> None:
+    """One half held, the end of the other one raised: it turns about the nodes between them, and no stress comes of it; a
+    shell bends."""
+    path = strip(tmp_path / "a.msh", 2, kind)
+    held = [abut.MidSupport("pad", x=0, y=0, z=0), abut.MidSupport("left", z=1e-3)]
+    largest = []
+    for membrane in (True, False):
+        thick = abut.thicken(path, {"strip": abut.Shell(THICK, membrane=membrane)}, held)
+        largest.append(float(np.abs(solved(thick, "strip", "full").steps[-1].stress).max()))
+    assert largest[0] < 1e-6 * largest[1]
+    assert largest[1] > E * THICK / 2 * 1e-3 / LENGTH**2
+
+
+def test_membrane_pulled(tmp_path: Path) -> None:
+    """Its end moved along: an even strain, and the force that the mid-surface shows."""
+    held = [abut.MidSupport("left", x=0, z=0), abut.MidSupport("corner", y=0), abut.MidSupport("right", x=0.1, z=0)]
+    thick = abut.thicken(strip(tmp_path / "a.msh", 4), {"strip": abut.Shell(THICK, membrane=True)}, held)
+    solution = solved(thick, "strip", "full")
+    assert abut.mid_surface(solution, "strip").membrane[:, 0] == pytest.approx(E * THICK * 0.1 / LENGTH, rel=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [({"membrane": True, "layers": (1, 2)}, "a membrane has no layers"), ({"membrane": 1}, "true or false")],
+)
+def test_membranes_that_are_none(given: dict[str, object], words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        abut.Shell(1.0, **given)  # type: ignore[arg-type]

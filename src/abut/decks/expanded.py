@@ -1,4 +1,4 @@
-"""Shells, beams and trusses of a deck as solids."""
+"""Shells, membranes, beams and trusses of a deck as solids."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from abut.decks.beams import with_thick_beams
 from abut.decks.in_plane import with_planes_held
+from abut.decks.membranes import with_thick_membranes
 from abut.decks.shell_edges import quadratic
 from abut.decks.thin import with_thick_shells
 from abut.decks.trusses import with_thick_trusses
@@ -16,7 +17,7 @@ from abut.io.deck.record import Deck, Equation, Numbers
 
 
 def expanded(deck: Deck, finite: bool) -> Deck:
-    """The deck with solids in place of shells, beams and trusses. ``finite``: at large displacements.
+    """The deck with solids in place of shells, membranes, beams and trusses. ``finite``: at large displacements.
 
     Raises InputError for what has no section or no size, and for what cannot be said of solids."""
     made, middles, ends = quadratic(with_planes_held(deck))
@@ -27,6 +28,7 @@ def thickened(deck: Deck, middles: Numbers, ends: Numbers, finite: bool) -> Deck
     """The same of one with quadratic shells. middles: (m,) nodes that were added in the middle of edges, whose ``ends`` are
     (m, 2): on linear solids they go with both ends, as the edge of the solid does; not in a knot, which is rigid."""
     new = with_thick_trusses(with_thick_beams(with_thick_shells(deck, finite), finite))
+    new = with_thick_membranes(new)
     rows = [block.nodes.ravel() for block in deck.blocks if not block.type.thin]
     on = np.isin(ends, np.unique(np.concatenate(rows))).all(axis=1) if rows else np.zeros(len(ends), bool)
     on &= np.isin(middles, list(new.thin))

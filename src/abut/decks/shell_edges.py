@@ -1,7 +1,7 @@
 """Linear shells of a deck with nodes in the middle of their edges, which are nodes of the deck from then on.
 
 They are held as both ends of their edge are held, where it is at the rim of the shell, and are as warm as both together.
-Trusses are held at their hinges alone."""
+Trusses are held at their hinges alone; linear membranes stay so."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from abut.mesh.thin.edges import edges_of, with_middles
 def quadratic(deck: Deck) -> tuple[Deck, Numbers, Numbers]:
     """The deck with quadratic shells only, the nodes (m,) that are new, and the ends (m, 2) of the edges they are in the
     middle of."""
-    thin = [block for block in deck.blocks if block.type.thin and len(edges_of(block.type.kind))]
+    thin = [b for b in deck.blocks if b.type.thin not in ("", "membrane") and len(edges_of(b.type.kind))]
     if not thin:
         return deck, np.empty(0, np.int64), np.empty((0, 2), np.int64)
     rows = [np.searchsorted(deck.nodes, block.nodes) for block in thin]

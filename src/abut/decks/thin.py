@@ -14,9 +14,11 @@ from numpy.typing import NDArray
 from abut.decks.layers import by_section, edges_of, with_layers
 from abut.decks.solid_blocks import free_numbers, sections_of, with_solids
 from abut.io.deck.reasons import DeckError
-from abut.io.deck.record import Block, Coupling, Deck, Faces, Numbers, Prescribed, Section, Spring
+from abut.io.deck.record import Block, Coupling, Deck, Faces, Numbers, Prescribed, Spring
 from abut.io.deck.thin_record import Thin
 from abut.mesh.thin.shells import Expanded, Shell, expand
+
+CARD = "*SHELL SECTION"
 
 Vector = NDArray[np.float64]
 
@@ -33,10 +35,10 @@ def with_thick_shells(deck: Deck, finite: bool) -> Deck:
         Shell(
             block.type.kind,
             np.searchsorted(deck.nodes, block.nodes),
-            _thickness(deck, block),
-            _offsets(deck, block),
-            _normals(deck, block),
-            edges_of(_section_of(deck, block)[0]),
+            thickness_at(deck, block, CARD),
+            offsets_of(deck, block, CARD),
+            normals_at(deck, block),
+            edges_of(sections_of(deck, block, "element", CARD)[0]),
         )
         for block in blocks
     ]
@@ -57,13 +59,10 @@ def _with_solids(deck: Deck, blocks: list[Block], solid: Expanded, finite: bool)
     if finite:
         _check_turned(deck, thin)
     knots = [node for node, each in thin.items() if each.along is None]
-    stand_for = _every(deck, solid, number)
+    stand_for, heights = nodes_through(deck, solid, number)
     deck = with_solids(deck, "shell", solid.points, number, [(kind, cells[0]) for kind, cells in solid.cells])
     deck = with_layers(deck, blocks, [number[cells[1:]] for _, cells in solid.cells])
     deck = replace(deck, thin={node: each for node, each in thin.items() if node not in knots})
-    apart = solid.points - deck.points[solid.node[solid.director]]
-    at = np.einsum("nd,nd->n", apart, solid.normal[solid.director])
-    heights = dict(zip(number.tolist(), at.tolist()))
     deck = renamed(deck, stand_for, heights)
     couplings = [_knot(deck, blocks[0], node, stand_for[node]) for node in knots]
     return replace(deck, couplings=(*deck.couplings, *couplings))
@@ -89,43 +88,44 @@ def _thin(deck: Deck, solid: Expanded, number: Numbers) -> dict[int, Thin]:
     return result
 
 
-def _every(deck: Deck, solid: Expanded, number: Numbers) -> dict[int, Numbers]:
-    """All nodes through the thickness at each node of the deck that shells have."""
+def nodes_through(deck: Deck, solid: Expanded, number: Numbers) -> tuple[dict[int, Numbers], dict[int, float]]:
+    """All nodes through the thickness at each node of the deck that is expanded, and how far along the normal each of these
+    lies over that node."""
     result: dict[int, list[int]] = {}
     used = number >= 0
     for node, each in zip(deck.nodes[solid.node[solid.director[used]]].tolist(), number[used].tolist()):
         result.setdefault(node, []).append(each)
-    return {node: np.array(nodes, np.int64) for node, nodes in result.items()}
+    apart = solid.points - deck.points[solid.node[solid.director]]
+    at = np.einsum("nd,nd->n", apart, solid.normal[solid.director])
+    return {node: np.array(nodes, np.int64) for node, nodes in result.items()}, dict(zip(number.tolist(), at.tolist()))
 
 
-def _section_of(deck: Deck, block: Block) -> list[Section]:
-    return sections_of(deck, block, "element", "*SHELL SECTION")
+def offsets_of(deck: Deck, block: Block, card: str) -> Vector:
+    """(n,) of each element. card: that has sections of such elements."""
+    return np.array([section.offset for section in sections_of(deck, block, "element", card)])
 
 
-def _offsets(deck: Deck, block: Block) -> Vector:
-    return np.array([section.offset for section in _section_of(deck, block)])
-
-
-def _thickness(deck: Deck, block: Block) -> Vector:
-    """At each node of each element: that of the section, or of the nodes where it says so."""
+def thickness_at(deck: Deck, block: Block, card: str) -> Vector:
+    """(n, k) at each node of each element: that of the section, or of the nodes where it says so. card: that has sections of
+    such elements."""
     own = np.zeros(len(deck.nodes))
     for node, value in deck.thicknesses.items():
         own[np.searchsorted(deck.nodes, node)] = value
     nodes = np.searchsorted(deck.nodes, block.nodes)
-    sections = np.array([section.thickness for section in _section_of(deck, block)])
+    sections = np.array([section.thickness for section in sections_of(deck, block, "element", card)])
     result = np.where(sections[:, None] > 0.0, sections[:, None], own[nodes])
     bare = np.argwhere(result <= 0.0)
     if len(bare):
         element = int(block.ids[bare[0][0]])
         raise DeckError(
             block.place,
-            f"*ELEMENT: shell {element} has no thickness at one of its nodes; give it in *NODAL THICKNESS",
+            f"*ELEMENT: {block.type.thin} {element} has no thickness at one of its nodes; give it in *NODAL THICKNESS",
         )
     return np.asarray(result)
 
 
-def _normals(deck: Deck, block: Block) -> Vector:
-    """Those that are given, NaN elsewhere."""
+def normals_at(deck: Deck, block: Block) -> Vector:
+    """(n, k, 3): those that are given, NaN elsewhere."""
     result = np.full((*block.nodes.shape, 3), np.nan)
     if not deck.normals:
         return result

@@ -61,6 +61,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "thickness": "of the shell, > 0 [length]",
         "offset": "of the mesh from the middle of the shell along the normal, over the thickness: 0.5 on the positive side",
         "layers": "how thick layers are beside each other, from the negative side: each becomes a body, NAME-layer1 etc.",
+        "membrane": "cells hinged at their nodes, which carry forces in the surface and no moments",
     },
     "BeamTable": {
         "widths": "of a rectangular section along its first direction and along the second, tangent x first, > 0 [length]",

@@ -32,12 +32,12 @@ class Parts:
     sections: Mapping[str, Thin] = field(default_factory=dict)
 
     def integration(self, body: str, given: str) -> str:
-        """Of a body: where it is left to abut, that which does not lock in a shell, and leaves a beam no motion without
-        stiffness."""
+        """Of a body: where it is left to abut, that which does not lock in a shell, and leaves beams and membranes no motion
+        without stiffness."""
         section = self.sections.get(body)
         if section is None or given != AUTO:
             return given
-        return "reduced" if isinstance(section, Shell) else "full"
+        return "reduced" if isinstance(section, Shell) and not section.membrane else "full"
 
 
 def with_thin(file: JobFile, folder: Path, mesh: Mesh | None) -> Parts:

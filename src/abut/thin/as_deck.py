@@ -39,6 +39,7 @@ FORMS = {
 }  # round, hollow
 PLACE = Place("", 0)  # of what no deck says
 CODES = {"tri6": "S6", "quad8": "S8R", "line3": "B32"}
+HINGED = {"tri6": "M3D6", "quad8": "M3D8"}
 NOTHING = Material(
     "", Elastic("isotropic", ((0.0, (1.0, 0.0)),)), 0.0, Expansion(), PLACE
 )  # sections of decks have one
@@ -49,11 +50,12 @@ def as_deck(parts: Sorted, sections: Mapping[str, Thin], where: str) -> Deck:
     blocks, made, first = list[Block](), list[Section](), 1
     for name, section in sections.items():
         start = first
+        codes = HINGED if isinstance(section, Shell) and section.membrane else CODES
         for kind, cells in parts.bodies[name].items():
             nodes = (cells[:, [0, 2, 1]] if kind == "line3" else cells) + 1  # decks have the middle second
             ids = np.arange(first, first + len(cells))
             first += len(cells)
-            blocks.append(Block(f"{name}:{kind}", ELEMENTS[CODES[kind]], ids, nodes, Place(where, 0)))
+            blocks.append(Block(f"{name}:{kind}", ELEMENTS[codes[kind]], ids, nodes, Place(where, 0)))
         made.append(_section(name, section, np.arange(start, first)))
     for kind, cells in _solids(parts):
         blocks.append(

@@ -28,11 +28,14 @@ class Shell:
     layers : sequence of float
         Of a laminate, how thick its layers are beside each other, from the negative side: each becomes a body of its own,
         NAME-layer1 and so on, with a material of its own. One body where left out.
+    membrane : bool
+        Whether its cells are hinged at their nodes: it carries forces in its surface, and no moments from cell to cell. Flat
+        ones need large displacements to carry forces across. Give the body ``integration="full"``.
 
     Raises
     ------
     InputError
-        For a thickness, or layers, that are not above 0, and for what is no number.
+        For a thickness, or layers, that are not above 0, for what is no number, and for a membrane of layers.
 
     Examples
     --------
@@ -44,12 +47,17 @@ class Shell:
     thickness: float
     offset: float = 0.0
     layers: tuple[float, ...] = ()
+    membrane: bool = False
 
     def __post_init__(self) -> None:
         checks.positive(self.thickness, "thickness")
         checks.finite(self.offset, "offset")
         layers = checks.listed(self.layers, "layers", "numbers")
         object.__setattr__(self, "layers", tuple(checks.positive(layer, "layers") for layer in layers))
+        if not isinstance(self.membrane, bool):
+            raise InputError(f"membrane: expected true or false, got {self.membrane!r}")
+        if self.membrane and self.layers:
+            raise InputError("membrane: a membrane has no layers; leave one of the two out")
 
 
 @dataclass(frozen=True)

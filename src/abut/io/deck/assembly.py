@@ -18,7 +18,7 @@ Matrix = NDArray[np.float64]
 Change = Callable[[str], str]  # of the text of a field
 ENDS = {"PART": "ENDPART", "INSTANCE": "ENDINSTANCE", "ASSEMBLY": "ENDASSEMBLY"}
 NAMES = ("NSET", "ELSET", "NAME", "SURFACE")  # parameters with names that belong to the part
-INSIDE = ("NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "SOLIDSECTION", "SHELLSECTION", "BEAMSECTION",
+INSIDE = ("NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "SOLIDSECTION", "SHELLSECTION", "MEMBRANESECTION", "BEAMSECTION",
           "NODALTHICKNESS", "NORMAL", "SPRING", "RIGIDBODY", "COUPLING", "KINEMATIC", "DISTRIBUTING", "KINEMATICCOUPLING",
           "DISTRIBUTINGCOUPLING")  # fmt: skip
 _READ = {key(name) for name in READ}

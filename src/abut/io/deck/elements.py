@@ -13,8 +13,8 @@ class ElementType:
     """kind: the cell (``abut.cells``); plane: "strain", "stress", "axisymmetric", or None in 3D; integration as in
     ``abut.Solid``, measured on single and few elements of CalculiX 2.20: its C3D8, CPE4 and CAX4 are fully integrated,
     its C3D10, C3D15 and triangles with 6 nodes have 4, 9 and 3 points. instead: what abut takes in place of the
-    element's own formulation, "" where it is the same. thin: "shell", "beam" or "truss", a cell of a surface or line
-    that its section makes solid, or ""."""
+    element's own formulation, "" where it is the same. thin: "shell", "membrane", "beam" or "truss", a cell of a surface
+    or line that its section makes solid, or ""."""
 
     kind: str
     plane: str | None
@@ -25,9 +25,12 @@ class ElementType:
     @property
     def solid(self) -> str:
         """The cell that is solved, of a thin element that which its thickness makes of it."""
+        if self.thin == "membrane":
+            return LAYER[self.kind]
         return _EXPANDED[self.kind] if self.thin else self.kind
 
 
+LAYER = {"tri3": "wedge6", "tri6": "wedge15", "quad4": "hex8", "quad8": "hex20"}  # of one solid
 _EXPANDED = {
     "line2": "hex20",
     "line3": "hex20",
@@ -83,7 +86,7 @@ def _types() -> dict[str, ElementType]:
         result |= {f"{prefix}{code}": ElementType("quad4", plane, *_MEAN) for code in ("4H", "4RH", "4IH")}
         result |= {f"{prefix}{code}": ElementType("quad8", plane, *_POINTS) for code in ("8H", "8RH")}
         result |= {f"{prefix}{code}": ElementType("tri6", plane, *_POINTS) for code in ("6H", "6MH")}
-    return result | _shells() | _beams()
+    return result | _shells() | _membranes() | _beams()
 
 
 def _shells() -> dict[str, ElementType]:
@@ -97,6 +100,20 @@ def _shells() -> dict[str, ElementType]:
         "S6": ElementType("tri6", None, "reduced", "", "shell"),
         "S8": ElementType("quad8", None, "full", "", "shell"),
         "S8R": ElementType("quad8", None, "reduced", "", "shell"),
+    }
+
+
+def _membranes() -> dict[str, ElementType]:
+    """As CalculiX expands them, into one solid each that is hinged at its nodes; linear ones stay linear. With reduced
+    integration hinges would leave modes without energy."""
+    whole = "full integration instead of {}; hinged elements would have motions without stiffness"
+    return {
+        "M3D3": ElementType("tri3", None, "full", "", "membrane"),
+        "M3D4": ElementType("quad4", None, "full", "", "membrane"),
+        "M3D4R": ElementType("quad4", None, "b-bar", f"mean dilatation (b-bar) {_HOURGLASS}", "membrane"),
+        "M3D6": ElementType("tri6", None, "full", whole.format("9 points"), "membrane"),
+        "M3D8": ElementType("quad8", None, "full", "", "membrane"),
+        "M3D8R": ElementType("quad8", None, "full", whole.format("8 points"), "membrane"),
     }
 
 
@@ -117,7 +134,7 @@ def _beams() -> dict[str, ElementType]:
 
 
 ELEMENTS = _types()
-SHELLS, BEAMS = frozenset(_shells()), frozenset(_beams())
+SHELLS, BEAMS = frozenset({*_shells(), "M3D6", "M3D8", "M3D8R"}), frozenset(_beams())  # solids of second order
 
 # Local facet of ``abut.cells`` for S1, S2, ...
 _TETRAHEDRON = (0, 1, 2, 3)
@@ -157,7 +174,6 @@ _FAMILIES = (  # prefixes of what is refused, longest first
     ("C3D", "solid elements of this kind (hybrid, modified, thermal)"),
     ("CP", "plane elements of this kind (hybrid, modified, thermal)"),
     ("CAX", "axisymmetric elements of this kind (hybrid, twisted, thermal)"),
-    ("M3D", "membranes"),
     ("R3D", "rigid surfaces"),
     ("R2D", "rigid surfaces"),
     ("RAX", "rigid surfaces"),

@@ -51,6 +51,7 @@ def _parts(deck: Deck) -> Numbers:
     """For each of ``deck.nodes`` the number of the connected part it is in."""
     size = len(deck.nodes)
     ends = [(b.nodes[:, :1].repeat(b.nodes.shape[1], 1).ravel(), b.nodes.ravel()) for b in deck.blocks]
+    ends.append((deck.hinges[:, 0], deck.hinges[:, 1]))
     a, b = (np.searchsorted(deck.nodes, np.concatenate(end)) for end in zip(*ends))
     graph = csr_matrix((np.ones(len(a)), (a, b)), shape=(size, size))
     return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)

@@ -16,7 +16,8 @@ from abut.io.deck.reasons import Place, Reasons
 from abut.io.deck.record import Block, Faces, Numbers
 from abut.io.deck.spring_cards import ELEMENTS as SPRINGS
 
-SIDES = {"SNEG": "S1", "SPOS": "S2"}  # of shells
+SIDES = {"SNEG": "S1", "SPOS": "S2"}  # of shells and membranes
+SURFACES = ("shell", "membrane")
 POINTS = "DCOUP"  # elements that only bear the weights of *DISTRIBUTING COUPLING
 MOST = 10_000_000  # numbers in one GENERATE, or elements of a set, beyond which a deck is wrong
 
@@ -63,7 +64,7 @@ class Names:
 @dataclass(frozen=True)
 class MeshCards:
     """What the mesh cards say; see ``record.Deck``. numbers: of all nodes; kinds: cell type of each element,
-    expanded where it is thin; shells: their numbers."""
+    expanded where it is thin; shells: their numbers, and those of membranes."""
 
     nodes: Numbers
     points: np.ndarray[tuple[int, ...], np.dtype[np.float64]]
@@ -143,7 +144,7 @@ def mesh_cards(cards: Iterable[Card], notes: list[str], reasons: Reasons) -> Mes
         _named(surfaces),
         frozenset(nodes),
         kinds,
-        frozenset(number for number, (code, _) in elements.items() if ELEMENTS[code].thin == "shell"),
+        frozenset(number for number, (code, _) in elements.items() if ELEMENTS[code].thin in SURFACES),
         virtual,
     )
 
@@ -295,7 +296,7 @@ def _surface(
         if line.text(1):
             label = line.text(1).upper()
             types = [ELEMENTS[elements[e][0]] for e in members.tolist()]
-            label = SIDES.get(label, label) if all(t.thin == "shell" for t in types) else label
+            label = SIDES.get(label, label) if all(t.thin in SURFACES for t in types) else label
             face = face_number(line, label, "S", {t.solid for t in types})
         faces.append((members, face))
     return Faces(name, card.place, tuple(faces))

@@ -67,7 +67,6 @@ REFUSED: dict[str, str] = {
     "MAGNETIC PERMEABILITY": "it belongs to electromagnetics, which abut does not solve; take it out",
     "MASS": "point masses belong to dynamics; take them out, and give their weight by *CLOAD",
     "MASS FLOW": _FLOW,
-    "MEMBRANE SECTION": "membranes are not supported; model the part with solid elements",
     "MODAL DAMPING": "damping belongs to dynamics; take it out",
     "MULTI-STAGE CYCLIC SYMMETRY": "multistage cyclic symmetry is not supported; model one sector",
     "NCOPY": f"generated nodes are not read{_WRITE}",

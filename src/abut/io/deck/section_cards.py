@@ -43,7 +43,7 @@ def _section(card: Card, mesh: MeshCards, known: Mapping[str, Material] | None, 
 def _shell_section(
     card: Card, mesh: MeshCards, known: Mapping[str, Material] | None, axes: Mapping[str, Card]
 ) -> Section:
-    """One *SHELL SECTION. Raises InputError for a thickness that is none, and for layers that are none."""
+    """One *SHELL SECTION or *MEMBRANE SECTION. Raises InputError for a thickness or layers that are none."""
     thickness = 0.0
     layers = _layers(card, known, axes) if card.has("COMPOSITE") else ()
     if layers:
@@ -144,6 +144,7 @@ def _oriented(at: Card | Line, name: str | None, material: Material, known: Mapp
 _SECTIONS = {
     "SOLIDSECTION": _section,
     "SHELLSECTION": _shell_section,
+    "MEMBRANESECTION": _shell_section,
     "BEAMSECTION": _beam_section,
     "BEAMGENERALSECTION": _beam_section,
 }

@@ -1,4 +1,4 @@
-"""Surface meshes with a thickness as solid cells: hex20 and wedge15, one through the thickness or one for each layer.
+"""Surface meshes with a thickness as solid cells: one through the thickness, or one for each layer.
 
 Each node gets a director: the unit normal of the surface there, the mean over the cells around it whose normals lie within
 20 degrees of each other and which are equally thick. A node with several directors (at a fold, at a step in thickness) is a
@@ -20,15 +20,16 @@ Vector = NDArray[np.float64]
 ALIKE = float(np.cos(np.radians(20.0)))  # normals that are one, if they are the mesh's
 SAME = float(np.cos(np.radians(0.5)))  # the same, where one of them is given
 EQUAL = 1e-9  # of the thickness: thicknesses and offsets that are equal
-SOLID = {"tri6": "wedge15", "quad8": "hex20"}
+SOLID = {"tri3": "wedge6", "tri6": "wedge15", "quad4": "hex8", "quad8": "hex20"}
+LINEAR = ("tri3", "quad4")
 
 
 @dataclass(frozen=True)
 class Shell:
-    """Quadratic cells of one kind (tri6 or quad8) on a surface. cells: (n, k) rows of points; thickness: (n, k) at the nodes
+    """Cells of one kind on a surface, linear ones of one layer. cells: (n, k) rows of points; thickness: (n, k) at the nodes
     of each [length]; offset: (n,) of the nodes from the mid-surface along the normal, over the thickness; normals: (n, k, 3)
     where they are given, NaN elsewhere; layers: (m + 1,) from 0 to 1, where these begin and end over the thickness, from
-    the negative side."""
+    the negative side; apart: each cell has directors of its own."""
 
     kind: str
     cells: Numbers
@@ -36,6 +37,7 @@ class Shell:
     offset: Vector
     normals: Vector
     layers: Vector = field(default_factory=lambda: np.array([0.0, 1.0]))
+    apart: bool = False
 
 
 @dataclass(frozen=True)
@@ -64,7 +66,7 @@ def expand(points: Vector, shells: Sequence[Shell]) -> Expanded:
     offset = np.concatenate([np.repeat(shell.offset, shell.cells.shape[1]) for shell in shells])
     alike = {layers: i for i, layers in enumerate(dict.fromkeys(tuple(shell.layers.tolist()) for shell in shells))}
     stack = np.concatenate([np.full(shell.cells.size, alike[tuple(shell.layers.tolist())]) for shell in shells])
-    director, first = _directors(node, normal, given, np.column_stack([thickness, offset, stack]))
+    director, first = _directors(node, normal, given, np.column_stack([thickness, offset, stack, _apart(shells)]))
     count = len(first)
     mean = np.zeros((count, 3))
     np.add.at(mean, director, normal)
@@ -79,10 +81,22 @@ def expand(points: Vector, shells: Sequence[Shell]) -> Expanded:
     sizes = np.cumsum([shell.cells.size for shell in shells])[:-1]
     own = [start[d].reshape(s.cells.shape) for s, d in zip(shells, np.split(director, sizes))]
     cells = tuple(
-        (SOLID[s.kind], np.stack([_solid(first + 2 * k) for k in range(len(s.layers) - 1)]))
+        (SOLID[s.kind], np.stack([_solid(first + 2 * k, s.kind in LINEAR) for k in range(len(s.layers) - 1)]))
         for s, first in zip(shells, own)
     )
     return Expanded(at, column, share, stands, mean, thick, cells)
+
+
+def _apart(shells: Sequence[Shell]) -> Numbers:
+    """A number for each node of each cell: that of the cell where its directors are its own, 0 elsewhere."""
+    ends = np.cumsum([0, *(len(shell.cells) for shell in shells)])
+    each = [
+        np.repeat(
+            1 + first + np.arange(len(s.cells)) if s.apart else np.zeros(len(s.cells), np.int64), s.cells.shape[1]
+        )
+        for first, s in zip(ends.tolist(), shells)
+    ]
+    return np.concatenate(each)
 
 
 def _middles(layers: Sequence[float]) -> Vector:
@@ -108,9 +122,11 @@ def _normals(points: Vector, shell: Shell, which: int) -> tuple[Vector, NDArray[
 
 
 def slopes_at_nodes(kind: str) -> Vector:
-    """Derivatives (nodes, functions, 2) of the shape functions of a quadratic cell at its nodes, from its monomials."""
+    """Derivatives (nodes, functions, 2) of the shape functions of a cell at its nodes, from its monomials."""
     at = reference_nodes(kind)
-    powers = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)] + ([(2, 1), (1, 2)] if kind == "quad8" else [])
+    powers = [(0, 0), (1, 0), (0, 1)] + ([(1, 1)] if kind == "quad4" else [])
+    if kind not in LINEAR:
+        powers += [(2, 0), (1, 1), (0, 2)] + ([(2, 1), (1, 2)] if kind == "quad8" else [])
     r, s = at.T
 
     def monomials(a: int, b: int) -> list[Vector]:
@@ -127,7 +143,8 @@ def slopes_at_nodes(kind: str) -> Vector:
 
 def _directors(node: Numbers, normal: Vector, given: NDArray[np.bool_], own: Vector) -> tuple[Numbers, Numbers]:
     """The director of each node of a cell, and of each director the first of these that has it. Given normals come first,
-    else the cells in their order. own: (n, 3) thickness, offset, number of the layers, in which those of one are alike."""
+    else the cells in their order. own: (n, 4) thickness, offset, number of the layers, of the cell where it has its own, in
+    which those of one are alike."""
     result = np.full(len(node), -1, np.int64)
     firsts: list[int] = []
     order = np.argsort(node, kind="stable")
@@ -138,7 +155,9 @@ def _directors(node: Numbers, normal: Vector, given: NDArray[np.bool_], own: Vec
             lead = left[0]
             limit = SAME if given[lead] else ALIKE
             close = normal[left] @ normal[lead] > limit
-            mine = close & (np.abs(own[left] - own[lead]) <= EQUAL * np.array([own[lead, 0], 1.0, 1.0])).all(axis=1)
+            mine = close & (np.abs(own[left] - own[lead]) <= EQUAL * np.array([own[lead, 0], 1.0, 1.0, 1.0])).all(
+                axis=1
+            )
             mine[0] = True
             result[left[mine]] = len(firsts)
             firsts.append(int(lead))
@@ -146,11 +165,13 @@ def _directors(node: Numbers, normal: Vector, given: NDArray[np.bool_], own: Vec
     return result, np.array(firsts, np.int64)
 
 
-def _solid(bottom: Numbers) -> Numbers:
-    """Rows of the expanded points of the solid cells of a layer; bottom: (n, 6 or 8) of the points below at the nodes of the
+def _solid(bottom: Numbers, linear: bool) -> Numbers:
+    """Rows of the expanded points of the solid cells of a layer; bottom: (n, k) of the points below at the nodes of the
     shell's cells."""
-    corners = bottom.shape[1] // 2
     top = bottom + 2
+    if linear:
+        return np.concatenate([bottom, top], axis=1)
+    corners = bottom.shape[1] // 2
     return np.concatenate(
         [bottom[:, :corners], top[:, :corners], bottom[:, corners:], top[:, corners:], bottom[:, :corners] + 1], axis=1
     )
