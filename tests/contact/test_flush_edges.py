@@ -228,7 +228,8 @@ def test_beside_glue_at_large_sliding(cell: str, swap: bool, pressure: str, give
     the clamp by up to half a facet, .5, which takes 9 % more."""
     solution = abut.solve(glued(cell, "finite", swap, pressure=pressure, **given))
     exact, shorter = (
-        bent_leaves([TWO[0], end], BENDING, LOAD, given.get("friction", 0.0), 1.0).forces[0] for end in (SHORT, SHORT - 0.5)
+        bent_leaves([TWO[0], end], BENDING, LOAD, given.get("friction", 0.0), 1.0).forces[0]
+        for end in (SHORT, SHORT - 0.5)
     )
     assert 0.95 * exact < between(solution)[0] < (shorter if swap else 1.01 * exact)
     assert at_clamp(solution) == 0.0
