@@ -187,6 +187,25 @@ def test_nothing_is_said_where_surfaces_slip() -> None:
     assert all(step.energy.unexplained is None for step in slipping)  # type: ignore[union-attr]
 
 
+def test_nothing_is_said_of_steps_at_rest() -> None:
+    """A fit that is closed in the first step: what the others store is rounding of what that has stored."""
+    rings = {
+        name: make.ring(radii, cells=(2, 8), cell="quad4") for name, radii in (("hub", (10, 20)), ("shaft", (5, 10)))
+    }
+    held = [abut.Support(f"{name}.{end}", **{a: 0}) for name in rings for end, a in (("start", "y"), ("end", "x"))]
+    solution = abut.solve(
+        abut.Model(
+            make.join(rings), [abut.Solid(name, SOFT) for name in rings], held, plane="strain", kinematics="finite",
+            contacts=[abut.Contact(contactor="hub.inner", target="shaft.outer", offset=-0.02)],
+            solve=abut.SolveOptions(steps=8),
+        )
+    )  # fmt: skip
+    first, *others = [step.energy for step in solution.steps]
+    assert first is not None
+    assert all(energy is not None and abs(energy.stored) < 1e-12 * first.stored for energy in others)
+    assert not jumps(solution)
+
+
 def test_little_is_no_jump(snapped: Solution) -> None:
     """What pressures or the tolerance of equilibrium may leave open is none, and a hundredth of the work is the limit."""
     energy = next(step.energy for step in snapped.steps if step.energy is not None and step.energy.jumped > 0.0)

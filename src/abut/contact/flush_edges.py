@@ -30,9 +30,12 @@ class FlushEdges:
     at_edge: NDArray[np.bool_]
 
     @classmethod
-    def of(cls, contactor: Surface, border: Rim, some: NDArray[np.bool_]) -> FlushEdges:
-        """border: of the contactor; some: (m,) of its edges, those at which both sides end, or the contactor's body goes on.
-        Facets between targets beside each other have none."""
+    def of(
+        cls, contactor: Surface, border: Rim, beyond: NDArray[np.bool_], ongoing: NDArray[np.bool_] | None
+    ) -> FlushEdges:  # fmt: skip
+        """border: of the contactor; beyond, ongoing: (m,) its edges beyond which the target goes on, and the contactor's own
+        body (None for nowhere). Facets between targets beside each other have none."""
+        some = ~beyond if ongoing is None else ~beyond | ongoing
         here = some & (second_order(contactor) & ~beside_others(contactor))[border.facet]
         facet, ends = border.facet[here], border.ends[here]
         nodes = contactor.nodes[facet]

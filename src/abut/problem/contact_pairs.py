@@ -121,7 +121,7 @@ def pair(
     flush = None
     if not (space.ordinary or model.finite):
         smooth = body_goes_on(model.mesh, contactor, border, beyond & second_order(contactor)[border.facet])
-        flush = FlushEdges.of(contactor, border, ~beyond | smooth)
+        flush = FlushEdges.of(contactor, border, beyond, smooth)
     planes = planes_of(model, contactor, sides_end, goes_on(contactor, sides_end, target, reach), constraints)
     own_pair = Pair(
         contact, contactor, target, coupling, space, rows, free,

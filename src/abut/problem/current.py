@@ -90,11 +90,12 @@ class Current:
         return np.where(inner > 0.0, INNER, np.where(known == INNER, DUAL, known))
 
     def _tried(self, known: Array, end: Placed) -> Array:
-        """The same at the end of a step, with those that are tried, or refused, at edges where both sides end."""
+        """The same at the end of a step, with those that are tried, or refused, at edges as in ``FlushEdges``."""
         known, closed = self._inner(known, end), end.closed[self.pair.normal]
         contactor, target = self.surfaces(end.displacement)
-        border = rim(contactor)
-        flush = FlushEdges.of(contactor, border, ~goes_on(contactor, border, target, NEAR * self._facet))
+        border, moving = rim(contactor), self.pair.moving
+        beyond = goes_on(contactor, border, target, NEAR * self._facet)
+        flush = FlushEdges.of(contactor, border, beyond, None if moving is None else moving.ongoing)
         apart = np.ones(len(contactor), dtype=bool)
         if (known == TRIED).any():
             at = self.shown(end.displacement).gap_samples

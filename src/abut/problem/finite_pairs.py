@@ -5,10 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from abut.contact.coupling import CouplingOptions, couple
+from abut.contact.flush_edges import second_order
 from abut.contact.geometry import facet_products, facet_sizes, full_moments, nodal_normals
 from abut.contact.pressure_space import DUAL, DUAL_P1, pressure_space, resolve
+from abut.contact.rim import body_goes_on, rim
 from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.model import Contact, Model
@@ -55,6 +58,8 @@ def finite_pair(model: Model, contact: Contact, constraints: Constraints) -> Pai
     space = without_held(pressure_space(name, contactor, whole), contactor, whole, constraints)
     sizes, both = facet_sizes(contactor), scales(model, contactor, target)
     size, n = float(np.median(sizes)), len(space)
+    if not space.ordinary:
+        moving = replace(moving, ongoing=_ongoing(model, contactor))
     seen = space if space.ordinary else Mixture.of(contactor, coupling, None).space(space)
     rows = (seen.transfer.T @ coupling.operator).tocsr()
     made = Pair(
@@ -67,6 +72,12 @@ def finite_pair(model: Model, contact: Contact, constraints: Constraints) -> Pai
     if not contact.frictional:
         return made
     return with_friction(model, made, nodal_normals(contactor, moving.contactor), constraints)
+
+
+def _ongoing(model: Model, contactor: Surface) -> NDArray[np.bool_]:
+    """Of facets of second order, as in ``Moving``."""
+    border = rim(contactor)
+    return body_goes_on(model.mesh, contactor, border, second_order(contactor)[border.facet])
 
 
 def moving_normals(model: Model, contactor: Surface, target: Surface) -> Moving:

@@ -59,10 +59,12 @@ class Slip:
 @dataclass(frozen=True)
 class Moving:
     """Where normals are averaged, and lie in planes of symmetry, wherever a pair moves: as at the outset, so that forces do
-    not jump when an angle grows. target: None where it has a facet without a normal; the contactor may still see others."""
+    not jump when an angle grows. target: None where it has a facet without a normal; the contactor may still see others.
+    ongoing: (m,) bool, edges of the contactor's rim beyond which its body goes on smoothly; None where none is asked for."""
 
     contactor: Smoothing
     target: Smoothing | None
+    ongoing: NDArray[np.bool_] | None = None
 
 
 @dataclass(frozen=True)

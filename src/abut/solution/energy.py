@@ -54,11 +54,13 @@ class Energy:
     @property
     def jumped(self) -> float:
         """What no stable way of equilibria explains, beyond what tolerances and pressures leave open (these do no work where
-        contact is the same at both ends), over the work of the step; 0 for none."""
+        contact is the same at both ends), over the work of the step; 0 for none. Of a step that hardly does any beside those
+        before, all is rounding."""
         if self.unexplained is None:
             return 0.0
         beyond = max(self.unexplained - self.left - abs(self.contact), 0.0)
-        return beyond / max(abs(self.loads), abs(self.stored + self.plastic), ROUNDED * self.size, 1e-300)
+        least = max(ROUNDED * self.size, ENERGY * self.earlier, 1e-300)
+        return beyond / max(abs(self.loads), abs(self.stored + self.plastic), least)
 
     @property
     def limit(self) -> float:
