@@ -22,7 +22,7 @@ PAGE = DOCS / "verification" / "features.md"
 HEADER = ["table", "keys", "closed forms", "page", "picture", "`abut check`", "report"]
 APART = ("schema", "parameters", "mesh", "model", "materials", "solids", "solve", "output")  # what every job has
 MADE_OF = {
-    "sectors": ("ring-sector",),
+    "sectors": ("ring-sector", "sector-fit"),
     "fields": ("mapped-temperature", "submodel"),
     "stops": ("stop",),
     "start": ("start-plastic", "start-fit"),

@@ -59,7 +59,8 @@ class Surroundings:
     reported pressure was recovered from, theory (P10), by default it itself; gives: the target's share of what both sides
     give way, 0 where it is held; slid: (n_facets,) motion of each along the target, in facets, None where contact follows
     it; sides: as the choice of the contactor sees them, None where it has no part in it;
-    bends: how far a thin part gives way, a length, as from ``thin_give``, None where no side is one."""
+    bends: how far a thin part gives way, a length, as from ``thin_give``, None where no side is one; at_sides: what is not
+    continued beyond the sides of a sector, in words."""
 
     reference: float = 0.0
     beside: float = 0.0
@@ -73,6 +74,7 @@ class Surroundings:
     slid: NDArray[np.float64] | None = None
     sides: tuple[Side, Side] | None = None
     bends: float | None = None
+    at_sides: str = ""
 
 
 def certificate(

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.analysis.beyond_sides import Beyond, Shown, facet_wise, sides_line
 from abut.analysis.certificate import NOTHING, Surroundings, certificate
 from abut.analysis.friction import friction_balance, friction_checks, friction_forces, friction_result
 from abut.analysis.sides import sides_check
@@ -172,6 +173,7 @@ def contact_result(
         target_pressure=carried,
         checks=(
             *_checks(state, residual, around, nodal, share, average),
+            *sides_line(pair, state.values, around.at_sides),
             *sides_check(pair, around.sides, nodal, carried, NOTHING * max(around.reference, around.beside)),
         ),
         statistics=statistics,
@@ -275,7 +277,17 @@ def _statistics(
     )
 
 
-def reported(state: PairState, at: Averages) -> Recovery:
+def reported(state: PairState, at: Averages) -> Shown:
+    """The pressure at points and at the facets' nodes, with what is beyond the sides of a sector."""
+    beyond = Beyond.of(state.pair)
+    if beyond is None:
+        return Shown(_recovered(state, at), None, at.surface)
+    field = facet_wise(beyond.more, state.normal if state.mended is None else state.mended)
+    every = averages(beyond.pair.contactor, beyond.pair.coupling, at.exact[beyond.more.source])
+    return Shown(_recovered(replace(state, pair=beyond.pair, mended=field), every), beyond.more, beyond.own)
+
+
+def _recovered(state: PairState, at: Averages) -> Recovery:
     """The pressure at points and at the facets' nodes: from averages of facet-wise coefficients, theory (P10), values at
     points, theory (P18); of cells of first order averages, sharpened where ordinary continuous functions are in contact all
     over, theory (P12), else with those on planes of symmetry mended, theory (P14); but for facets that are ``exact``."""

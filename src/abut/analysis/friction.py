@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.analysis.beyond_sides import Shown
 from abut.analysis.statistics import cross
 from abut.contact.friction_bound import FrictionBound
 from abut.contact.geometry import by_kind, function_count, nodal_normals
 from abut.contact.nodal_recovery import facet_node_values
-from abut.contact.point_values import Recovery
 from abut.contact.smooth_friction import slip_of
+from abut.contact.turned_functions import by_turn, spread
 from abut.problem.pair import Pair
 from abut.solution import Check, FrictionResult
 from abut.solution.state import CLOSED, OPEN, SLIPPING
@@ -27,12 +28,12 @@ Vector = NDArray[np.float64]
 
 def traction_values(pair: Pair, multipliers: Vector) -> Vector:
     """Tangential traction on the contactor as facet-wise coefficients, (9 n_facets, dim)."""
-    return np.asarray(pair.space.transfer @ pair.tangential_traction(multipliers))
+    return spread(pair.contactor, pair.space.node, pair.space.transfer, pair.tangential_traction(multipliers))
 
 
 def friction_result(
     pair: Pair,
-    recovery: Recovery,
+    recovery: Shown,
     multipliers: Vector,
     status: NDArray[np.int8],
     slips: Vector,
@@ -52,7 +53,7 @@ def friction_result(
     size, bound = np.linalg.norm(traction, axis=1), _bound(limit, multipliers[pair.normal], states)
     most = _limit_at_nodes(pair, recovery, bound)
     taken = np.where(states != OPEN, -np.einsum("kd,kd->k", traction, slip), 0.0)
-    work, each = float(area @ taken), _at_nodes(pair, taken[:, None])[..., 0]
+    work, each = float(area @ taken), _of_facets(pair, pair.space.plain @ taken[:, None])[..., 0]
     return FrictionResult(
         coefficient=float(limit.coefficients(np.maximum(multipliers[pair.normal], 0.0)).max(initial=0.0)),
         traction=_within(_along(pair, recovery, values), most),
@@ -80,18 +81,18 @@ def _bound(limit: FrictionBound, pressure: Vector, status: NDArray[np.int8]) -> 
     return limit.at(np.maximum(pressure, 0.0))[0]
 
 
-def _limit_at_nodes(pair: Pair, recovery: Recovery, bound: Vector) -> Vector:
+def _limit_at_nodes(pair: Pair, recovery: Shown, bound: Vector) -> Vector:
     """The bound (n_functions,) at the facets' nodes, recovered as the traction is, (n_facets, 9)."""
     rough = bool(np.isinf(bound).any())
     shown = recovery.field(pair.space.transfer @ np.where(np.isfinite(bound), bound, 1.0))
     return np.where(shown > 0.0, np.inf, shown) if rough else np.maximum(shown, 0.0)
 
 
-def _along(pair: Pair, recovery: Recovery, values: Vector) -> Vector:
+def _along(pair: Pair, recovery: Shown, values: Vector) -> Vector:
     """Tractions (9 n_facets, dim) at the facets' nodes, (n_facets, 9, dim), along the surface there: components that are
     recovered one by one leave it by a little where it is curved."""
-    traction = np.stack([recovery.field(component) for component in values.T], axis=-1)
-    if recovery.fits is None:
+    traction = recovery.vectors(values)
+    if not recovery.fits:
         return traction
     normal = nodal_normals(pair.contactor)
     return np.asarray(traction - np.einsum("fkd,fkd->fk", traction, normal)[..., None] * normal)
@@ -119,7 +120,11 @@ def tangential_forces(pair: Pair, multipliers: Vector) -> Vector:
 
 def _at_nodes(pair: Pair, values: Vector) -> Vector:
     """Vectors (n_functions, dim) at the facets' nodes, (n_facets, 9, dim), NaN where padded."""
-    at_rows = pair.space.plain @ values
+    return _of_facets(pair, spread(pair.contactor, pair.space.node, pair.space.plain, values))
+
+
+def _of_facets(pair: Pair, at_rows: Vector) -> Vector:
+    """Facet-wise coefficients (9 n_facets, c) at the facets' nodes, (n_facets, 9, c)."""
     degree = pair.coupling.degree
     return np.stack([facet_node_values(pair.contactor, degree, component) for component in at_rows.T], axis=-1)
 
@@ -209,7 +214,8 @@ def _couple(pair: Pair, multipliers: Vector) -> Vector:
         return np.zeros(3 if dim == 3 else 1)
     along = pair.tangential_traction(multipliers)
     if dim == 3:
-        return np.cross(pair.space.transfer.T @ arms, along).sum(axis=0)
+        parts = by_turn(pair.contactor, pair.space.node, pair.space.transfer)
+        return np.asarray(sum(np.cross(part.T @ arms, along @ turn.T).sum(axis=0) for turn, part in parts))
     # turned normals are square to N and of unit length at every point
     size = np.einsum("kd,kd->k", along, pair.slip.tangents[:, 0])[:, None]
     return np.asarray((pair.space.transfer.T @ arms * size).sum(axis=0))

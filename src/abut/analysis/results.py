@@ -53,6 +53,7 @@ from abut.problem.problem import ContactProblem
 from abut.problem.rigid_bodies import RigidBody
 from abut.problem.scales import scales
 from abut.problem.sections import preload_forces
+from abut.problem.sector_sides import left_out
 from abut.problem.springs import Springs
 from abut.problem.stabilising import drag_of, is_dragged
 from abut.problem.step_error import landed_in
@@ -330,7 +331,8 @@ def _contacts(
         sides = model.measured(pair.contact) if pair.contact in model.contacts and not pair.tied else None
         beside_it = Surroundings(reference, beside, overlap, free, elsewhere, support, cells, gives=gives, slid=along)
         yielding = bends(model, pair, pressed, end.nodal, end.internal)
-        around.append(replace(beside_it, sides=sides, bends=yielding))
+        note = left_out(model, pair.contact) if pair.contact in model.contacts else ""
+        around.append(replace(beside_it, sides=sides, bends=yielding, at_sides=note))
     residual = attempt.iterations[-1].contact_residual
     found = zip(
         balance.pairs, end.pressures, balance.split(balance.gap), balance.split(end.state.status),

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from abut._core import shape_functions
 from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.geometry import area_vectors, by_kind, split_at_creases, straight
-from abut.contact.mirror_images import with_images
+from abut.contact.mirror_images import RINGS, with_images
+from abut.contact.turned_images import Extended, extended
 from abut.mesh.surface import Surface
 from abut.types import Sparse
 
@@ -42,11 +43,23 @@ class Held:
         which = np.arange(int(count.sum())) + np.repeat(first - np.cumsum(count) + count, count)
         return np.repeat(np.arange(len(points)), count), self.directions[order[which]]
 
+    def turned(self, more: Extended) -> Held:
+        """With those of images beyond the sides of a sector."""
+        beyond = np.flatnonzero(more.point_power != 0)
+        number, directions = self.at(more.point[beyond])
+        turned = more.turned(directions, more.point_power[beyond][number])
+        return Held(np.concatenate([self.points, beyond[number]]), np.concatenate([self.directions, turned]))
+
 
 def with_bulge(surface: Surface, held: Held | None = None) -> Surface:
     """The surface with its ``bulge``: None where it is flat everywhere."""
     if not len(surface):
         return surface
+    if surface.turned is not None:
+        more = extended(surface, RINGS)
+        found = with_bulge(replace(more.surface, turned=None), None if held is None else held.turned(more)).bulge
+        own = None if found is None else found[: len(surface)]
+        return surface if own is None or not own.any() else replace(surface, bulge=own)
     split, owner = split_at_creases(surface)
     normals = _vertex_normals(split, owner, held)
     bulge = np.zeros((len(surface), MAX_FACET_NODES))

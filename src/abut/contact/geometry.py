@@ -12,6 +12,7 @@ from scipy.sparse.csgraph import connected_components
 
 from abut._core import shape_functions
 from abut.cells import BY_CODE, CELLS, MAX_FACET_NODES
+from abut.contact.turned_images import Images, extended, sides_of_split, used_sides
 from abut.errors import InputError
 from abut.mesh.integrals import determinants
 from abut.mesh.quadrature import gauss_rule
@@ -109,16 +110,20 @@ class Smoothing:
     here, other: (n,) visits at the same point with no crease between them: the normal at ``here`` contains the facet of
                  ``other``. Each visit is a pair with itself.
     planes:      where the surface goes on as its mirror image, whatever its configuration.
+    images:      visits beyond the sides of a sector, numbered after the surface's own; ``other`` may be one.
     """
 
     here: NDArray[np.int64]
     other: NDArray[np.int64]
     planes: OnPlanes | None = None
+    images: Images | None = None
 
 
 def smoothing(surface: Surface) -> Smoothing:
     """Creases are edges where facets meet at more than 40 degrees. Raises InputError for a facet without a normal at one
     of its nodes."""
+    if used_sides(surface) is not None:
+        return _across_sides(surface)
     areas = area_vectors(surface)
     facet, local = _visits(surface)
     vector = areas[facet, local]
@@ -126,6 +131,20 @@ def smoothing(surface: Surface) -> Smoothing:
     check_normals(surface, areas, length)
     pairs = list(_without_crease(surface.nodes[facet, local].astype(np.int64), vector / length))
     return Smoothing(np.concatenate([p[0] for p in pairs]), np.concatenate([p[1] for p in pairs]))
+
+
+def _across_sides(surface: Surface) -> Smoothing:
+    """The same of a surface that goes on beyond the sides of a sector."""
+    more = extended(surface, 1)
+    found = smoothing(more.surface)
+    facet, local = _visits(more.surface)
+    number = np.full(surface.nodes.shape, -1)
+    number[_visits(surface)] = own = np.arange(int((surface.nodes >= 0).sum()))
+    beyond = facet >= len(surface)
+    turns = np.stack([more.turns[k] for k in more.power[facet[beyond]].tolist()])
+    kept = found.here < len(own)
+    images = Images(number[more.source[facet[beyond]], local[beyond]], turns)
+    return Smoothing(found.here[kept], found.other[kept], images=images)
 
 
 def nodal_normals(surface: Surface, across: Smoothing | None = None) -> NDArray[np.float64]:
@@ -154,7 +173,8 @@ def _visits(surface: Surface) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
 
 def _totals(vector: NDArray[np.float64], across: Smoothing) -> NDArray[np.float64]:
     total = np.zeros_like(vector)
-    np.add.at(total, across.here, vector[across.other])
+    every = vector if across.images is None else across.images.with_images(vector)
+    np.add.at(total, across.here, every[across.other])
     if across.planes is not None:
         visits = across.planes.visits
         total[visits] = np.einsum("vab,vb->va", across.planes.inside, total[visits])
@@ -255,6 +275,16 @@ def _without_crease(
 def split_at_creases(surface: Surface) -> tuple[Surface, NDArray[np.int64]]:
     """The surface with its points doubled along creases and borders of its parts, one for each smooth side, and (n_points,)
     the point that each of its points was: theory (P13). Points keep their numbers, further ones come at the end."""
+    if used_sides(surface) is None:
+        return _split(surface)
+    (result, owner), more = _split(replace(surface, turned=None)), extended(surface, 1)
+    return replace(
+        result, turned=sides_of_split(surface, more, _split(more.surface)[0].nodes, result.nodes, owner)
+    ), owner
+
+
+def _split(surface: Surface) -> tuple[Surface, NDArray[np.int64]]:
+    """Of facets that are there, without what is beyond the sides of a sector."""
     areas = area_vectors(surface)
     facet, local = np.nonzero(surface.nodes >= 0)
     node = surface.nodes[facet, local].astype(np.int64)

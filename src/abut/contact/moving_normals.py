@@ -21,6 +21,7 @@ from abut.contact.geometry import (
     node_coordinates,
     smoothing,
 )
+from abut.contact.turned_images import Images
 from abut.mesh.surface import Surface
 from abut.types import Array, Sparse
 
@@ -45,9 +46,10 @@ class NormalPattern:
     """What the nodal normals of a surface depend on, wherever its points are; ``normal_pattern``.
 
     numbers: as in ``MovingNormals``; sums: (m, n_visits) which facets' area vectors make each normal (a visit is a node of a
-    facet, as in ``Smoothing``); gather: (n_blocks, n_rates) which derivatives of area vectors by a point make each block;
-    row, column: (n_blocks,) normal and point; on_planes, inside: (k,) normals in planes of symmetry, (k, dim, dim)
-    projections on these."""
+    facet, as in ``Smoothing``, images among them); gather: (n_blocks, n_rates) which derivatives of area vectors by a point
+    make each block; row, column: (n_blocks,) normal and point; on_planes, inside: (k,) normals in planes of symmetry, (k,
+    dim, dim) projections on these; images, image_rates: the images, and of which derivatives theirs are, turned, with the
+    number of the image, (n_image_rates,)."""
 
     numbers: NDArray[np.int32]
     sums: Sparse
@@ -56,6 +58,8 @@ class NormalPattern:
     column: NDArray[np.int32]
     on_planes: NDArray[np.int32]
     inside: NDArray[np.float64]
+    images: Images | None
+    image_rates: tuple[NDArray[np.int64], NDArray[np.int64]]
 
     @cached_property
     def _start(self) -> NDArray[np.int32]:
@@ -65,7 +69,7 @@ class NormalPattern:
         """At the surface's points. Raises InputError for a facet without a normal at one of its nodes."""
         dim, used = surface.dim, surface.nodes >= 0
         areas = area_vectors(surface)
-        total = self.sums @ areas[used]
+        total = self.sums @ (areas[used] if self.images is None else self.images.with_images(areas[used]))
         total[self.on_planes] = np.einsum("kab,kb->ka", self.inside, total[self.on_planes])
         length = np.linalg.norm(total, axis=1)
         check_normals(surface, areas, length[self.numbers[used], None])
@@ -73,6 +77,10 @@ class NormalPattern:
         values = np.zeros_like(areas)
         values[used] = unit[self.numbers[used]]
         rates = np.concatenate([part.reshape(-1, dim * dim) for part in _all_rates(surface)])
+        if self.images is not None:
+            rate, turn = self.image_rates
+            turned = self.images.turns[turn] @ rates[rate].reshape(-1, dim, dim)
+            rates = np.concatenate([rates, turned.reshape(-1, dim * dim)])
         swelling = (self.gather @ rates).reshape(-1, dim, dim)
         across = (np.eye(dim) - unit[:, :, None] * unit[:, None, :]) / length[:, None, None]
         across[self.on_planes] = across[self.on_planes] @ self.inside
@@ -83,18 +91,38 @@ def normal_pattern(surface: Surface, across: Smoothing | None = None) -> NormalP
     """Of a surface whose creases are those of another configuration, or its own."""
     across = across or smoothing(surface)
     numbers, first = _distinct(surface, across)
-    m, visits = len(first), len(numbers[surface.nodes >= 0])
+    of_image = np.zeros(0, dtype=np.int64) if across.images is None else across.images.source
+    m, own_visits = len(first), len(numbers[surface.nodes >= 0])
+    visits = own_visits + len(of_image)
     kept = np.isin(across.here, first)
     own = numbers[surface.nodes >= 0][across.here[kept]]
     sums = sp.csr_matrix((np.ones(len(own)), (own, across.other[kept])), shape=(m, visits))
     visit, node = _rate_places(surface)
+    image_rates = _image_rates(visit, of_image)
+    visit = np.concatenate([visit, own_visits + image_rates[1]])
+    node = np.concatenate([node, node[image_rates[0]]])
     rates = sp.csr_matrix((np.ones(len(visit)), (visit, np.arange(len(visit)))), shape=(visits, len(visit)))
     both = (sums @ rates).tocoo()
     n_points = len(surface.points)
     keys, place = np.unique(both.row.astype(np.int64) * n_points + node[both.col], return_inverse=True)
     gather = sp.csr_matrix((both.data, (place.ravel(), both.col)), shape=(len(keys), len(visit)))
     on_planes, inside = _in_planes(surface, across, numbers)
-    return NormalPattern(numbers, sums, gather, keys // n_points, (keys % n_points).astype(np.int32), on_planes, inside)
+    return NormalPattern(
+        numbers, sums, gather, keys // n_points, (keys % n_points).astype(np.int32), on_planes, inside, across.images,
+        image_rates,
+    )  # fmt: skip
+
+
+def _image_rates(visit: NDArray[np.int64], source: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Which derivatives those of images are, turned, and the number of each one's image. visit: of every derivative; source:
+    (n_images,) the visit that each is of."""
+    if not len(source):
+        return source, source
+    order = np.argsort(visit, kind="stable")
+    first, last = (np.searchsorted(visit[order], source, side) for side in ("left", "right"))
+    image = np.repeat(np.arange(len(source)), last - first)
+    place = np.arange(len(image)) - np.repeat(np.cumsum(last - first) - last, last - first)
+    return order[place], image
 
 
 def _in_planes(
@@ -110,8 +138,9 @@ def _in_planes(
 def _distinct(surface: Surface, across: Smoothing) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
     """Numbers of the nodal normals that differ, (n_facets, 9), and the first visit that has each."""
     used = surface.nodes >= 0
-    keys = np.random.default_rng(0).integers(0, 2**63, int(used.sum()), dtype=np.uint64)
-    total = np.zeros_like(keys)  # the same where the same facets are averaged
+    images = 0 if across.images is None else len(across.images.source)
+    keys = np.random.default_rng(0).integers(0, 2**63, int(used.sum()) + images, dtype=np.uint64)
+    total = np.zeros(int(used.sum()), dtype=np.uint64)  # the same where the same facets are averaged
     np.add.at(total, across.here, keys[across.other])
     _, first, number = np.unique(total, return_index=True, return_inverse=True)
     numbers = np.full(surface.nodes.shape, -1, dtype=np.int32)

@@ -18,6 +18,7 @@ from abut.cells import MAX_FACET_NODES
 from abut.contact.bases import dual, non_negative
 from abut.contact.coupling import Coupling, surface_degree
 from abut.contact.geometry import by_kind, full_moments, function_count, split_at_creases
+from abut.contact.turned_images import used_sides
 from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.types import Sparse
@@ -107,7 +108,7 @@ def pressure_space(name: str, contactor: Surface, coupling: Coupling, tied: bool
     elif name.endswith("discontinuous"):
         ids, column = np.full(len(row), -1), np.arange(len(row))
     else:
-        ids, column = np.unique(side, return_inverse=True)
+        ids, column = np.unique(side if tied else _at_partner(split, side), return_inverse=True)
     gather = sp.csr_matrix((np.ones(len(row)), (row, column.ravel())), shape=(rows, len(ids)))
     plain = (non_negative(contactor) @ gather).tocsr() if coupling.degree == 2 else gather
     is_dual = name in (DUAL, DUAL_P1)
@@ -117,6 +118,16 @@ def pressure_space(name: str, contactor: Surface, coupling: Coupling, tied: bool
     space = PressureSpace(name, coupling.degree, transfer, plain, transfer.T @ coupling.weight, node, ids)
     share = covered_share(space, contactor, coupling)
     return reduce(space, coupling, keep=share >= (WEAK_DUAL if is_dual else WEAK_SUPPORT), exists=share > NO_SUPPORT)
+
+
+def _at_partner(split: Surface, side: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Points (n,); those on one side of a sector as their partners on the other, where one function stands: theory (P27)."""
+    sides = used_sides(split)
+    if sides is None:
+        return side
+    to = np.arange(len(split.points))
+    to[sides.nodes] = sides.partners
+    return to[side]
 
 
 def covered_share(space: PressureSpace, contactor: Surface, coupling: Coupling) -> NDArray[np.float64]:

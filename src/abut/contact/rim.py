@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from abut.cells import CELLS
 from abut.contact.geometry import CREASE, by_kind, mean_normals, nodal_normals, split_at_creases
 from abut.contact.node_to_segment import feet
+from abut.contact.turned_images import extended
 from abut.mesh.exterior import numbered, single_facets
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
@@ -92,10 +93,11 @@ def ends_on_target(contactor: Surface, rim: Rim, on: NDArray[np.bool_]) -> NDArr
 
 
 def _edges(surface: Surface) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Those of ``_all_edges`` that belong to one facet only."""
-    facet, every = _all_edges(surface)
+    """Those of ``_all_edges`` that belong to one facet only, those beyond the sides of a sector included."""
+    facet, every = _all_edges(extended(surface, 1).surface)
     _, first, count = np.unique(np.sort(every, axis=1), axis=0, return_index=True, return_counts=True)
     single = first[count == 1]
+    single = single[facet[single] < len(surface)]
     return facet[single], every[single]
 
 

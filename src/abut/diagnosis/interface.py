@@ -19,6 +19,7 @@ from abut.mesh.surface import Surface
 from abut.model import Contact, Model
 from abut.model.offset import smallest_offset
 from abut.problem.pair import Pair
+from abut.problem.sector_sides import left_out
 
 BINS, WIDTH = 8, 30  # of the histogram: bars, and characters of the longest
 DEEP = 0.5  # overlap over facet size that is hardly meant
@@ -93,7 +94,14 @@ def interface(model: Model, pair: Pair, outside: NDArray[np.int64]) -> list[Find
     """Gaps as a histogram, deep overlaps, and what the contactor does not find opposite.
 
     outside: (n, 2) the facets of ``abut.mesh.exterior.exterior``."""
-    return [*_gaps(model, pair), *_bulges(pair), *_cover(model, pair, outside)]
+    return [*_gaps(model, pair), *_bulges(pair), *_at_sides(model, pair), *_cover(model, pair, outside)]
+
+
+def _at_sides(model: Model, pair: Pair) -> list[Finding]:
+    """What is not continued beyond the sides of a sector."""
+    note = left_out(model, pair.contact) if pair.contact in model.contacts else ""
+    where, cure = f"contact '{pair.contact.name}'", "cut the sector where nothing touches, if it can be"
+    return [Finding("warning", where, f"it reaches both sides of a sector: {note}", cure)] if note else []
 
 
 def _bulges(pair: Pair) -> list[Finding]:

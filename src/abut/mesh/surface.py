@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.cells import CELLS
+from abut.sectors import Turned
 from abut.types import Array
 
 
@@ -27,6 +28,7 @@ class Surface:
     bulge: (n_facets, 9) how far the smooth surface lies outside of each facet, a length: coefficients of the functions of
             middle nodes of the facet of second order with the same corners (``abut.contact.bulge``); None where it is flat.
             They belong to the facets, wherever these move.
+    turned: where it goes on as itself, turned, beyond the sides of a sector of cyclic symmetry.
     cells, local: (n_facets,) where each facet came from (cell index, facet number within the cell); -1 if unknown.
     """
 
@@ -40,6 +42,7 @@ class Surface:
     parts: NDArray[np.int64] | None = None
     kin: NDArray[np.float64] | None = None
     bulge: NDArray[np.float64] | None = None
+    turned: Turned | None = None
 
     @property
     def dim(self) -> int:

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from abut import checks
 from abut.bodies.solids import Solids
-from abut.contact.bulge import with_bulge
 from abut.contact.contactor_choice import Side
 from abut.contact.sides import (
     Names,
@@ -37,7 +36,7 @@ from abut.model.body_forces import Load
 from abut.model.conditions import Equation, History, Rigid, Support
 from abut.model.connector import Connector, Multipliers, check_connectors
 from abut.model.consistency import check_axis, check_equations, check_filled, check_loads, check_rigid, check_supports
-from abut.model.contact import GEOMETRIES, Contact
+from abut.model.contact import Contact
 from abut.model.coupling import Coupling, check_couplings, moving_points
 from abut.model.hold import Hold, check_holds
 from abut.model.integrations import Integrations
@@ -56,6 +55,7 @@ from abut.model.solve_options import SolveOptions
 from abut.model.spring import Spring, check_springs
 from abut.model.step_ends import with_corners
 from abut.model.symmetry import held_directions
+from abut.model.turned_sides import smooth_sides, turned_sides
 
 PLANES = ("strain", "stress", "axisymmetric")
 RECORDS: dict[str, tuple[type, ...]] = {  # what the lists of a model are of
@@ -295,8 +295,7 @@ class Model:
     def _sides(self) -> dict[str, Sides]:
         held = held_directions(self.mesh, self.supports)
         made = {c.name: self._surfaces(c, c.contactor, c.target) for c in self.contacts}
-        curved = [c.name for c in self.contacts if c.kind != "tied" and c.geometry == GEOMETRIES[0]]
-        return made | {name: (with_bulge(made[name][0], held), with_bulge(made[name][1], held)) for name in curved}
+        return smooth_sides(self.contacts, made, turned_sides(self.mesh, self.equations), held)
 
     def _surfaces(self, contact: Contact, contactor: Names, target: Names) -> Sides:
         if self.finite and contact.kind != "tied":

@@ -6,16 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from abut import checks
 from abut.errors import InputError
 from abut.mesh.mesh import Mesh
 from abut.mesh.record import MeshRecord
 from abut.model.conditions import COMPONENTS, Equation, Term, vector
+from abut.sectors import matched
 from abut.types import Array
 
-NEAR = 1e-3  # of the sides' extent: distance within which nodes on both sides, one turned, count as the same
 TINY = 1e-12  # of a coefficient: one that rounding leaves
 
 
@@ -141,30 +140,17 @@ def _pairs(mesh: Mesh, sector: Sector, where: str) -> tuple[Array, Array, Array]
     """Nodes of the side that follows, their partners, and the turn (dim, dim) from these to the former."""
     nodes, others = (np.unique(mesh.nodes_of(name)) for name in (sector.side, sector.other))
     origin = np.array(sector.origin or (0.0,) * mesh.dim)
-    x, y = mesh.points[nodes] - origin, mesh.points[others] - origin
-    size = float(np.ptp(np.concatenate([x, y]), axis=0).max())
-    turns = [_turn(sector, mesh.dim, sign * 2.0 * np.pi / sector.sectors) for sign in (1.0, -1.0)]
-    found = [cKDTree(y @ turn.T).query(x) for turn in turns]
-    best = int(found[1][0].max() < found[0][0].max())
-    distance, match = found[best]
-    if distance.max() > NEAR * size or len(set(match.tolist())) < len(others):
-        at = ", ".join(f"{value:.6g}" for value in x[int(distance.argmax())] + origin)
+    axis = np.array(sector.axis or (0.0, 0.0, 1.0)) if mesh.dim == 3 else None
+    found = matched(mesh.points[nodes], mesh.points[others], sector.sectors, origin, axis)
+    if not found.fits or len(nodes) != len(others):
+        worst = int(found.distance.argmax())
+        at = ", ".join(f"{value:.6g}" for value in mesh.points[nodes[worst]])
         raise InputError(
             f"{where}: no node of '{sector.other}' is where ({at}) of '{sector.side}' is one of {sector.sectors} sectors "
-            f"on (off by {distance.max():.3g}, {len(nodes)} and {len(others)} nodes); mesh both sides alike, or correct "
-            "sectors, axis and origin"
+            f"on (off by {found.distance[worst]:.3g}, {len(nodes)} and {len(others)} nodes); mesh both sides alike, or "
+            "correct sectors, axis and origin"
         )
-    return nodes, others[match], turns[best]
-
-
-def _turn(sector: Sector, dim: int, angle: float) -> Array:
-    """Rotation matrix."""
-    if dim == 2:
-        return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    axis = np.array(sector.axis or (0.0, 0.0, 1.0))
-    e = axis / np.linalg.norm(axis)
-    cross = np.array([[0.0, -e[2], e[1]], [e[2], 0.0, -e[0]], [-e[1], e[0], 0.0]])
-    return np.asarray(np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross)
+    return nodes, others[found.match], found.turn
 
 
 def _rows(node: int, partner: int, turn: Array) -> list[Equation]:

@@ -213,7 +213,9 @@ def _together(
         [sp.csr_matrix((points.shape[0], first)), sp.vstack([above, cut.by_shortenings])], format="csr"
     )
     rows.append(_without_rounding(by_unknowns, abs(points).max(axis=1).toarray().ravel()))
-    values.append(np.concatenate([value, constants, cut.values]) - points @ prescribed)
+    given = np.concatenate([value, constants, cut.values])
+    left, size = given - points @ prescribed, np.abs(given) + abs(points) @ np.abs(prescribed)
+    values.append(np.where(np.abs(left) > CANCELLED * size, left, 0.0))
     every = sp.vstack(rows, format="csr")
     done = eliminate(every, np.concatenate(values), names)
     cut.require_closing(done.free[first:])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,12 +20,14 @@ from abut.contact.geometry import (
     split_at_creases,
     turning_within,
 )
+from abut.contact.turned_images import extended, used_sides
 from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.model.symmetry import held_directions
 
 Array = NDArray[np.float64]
+SEEN = 2  # rings of facets around a contactor whose own normals decide those at its nodes
 LEAN = (
     3.0  # of a normal out of a plane of symmetry, over the angle by which its facet turns that way: 1 on round surfaces
 )
@@ -42,13 +45,26 @@ def contact_normals(
     model: Model, contactor: Surface, target: Surface, share: float, reach: float, couple: Couple
 ) -> Array:
     """As ``common_normals``; at nodes that supports hold beside them, as at a plane of symmetry, they lie in the directions
-    that are left."""
+    that are left. Beyond the sides of a sector both go on, turned."""
     held = held_directions(model.mesh, model.supports)
+    if used_sides(contactor) is None and used_sides(target) is None:
+        return _between((contactor, held), (target, held), share, reach, couple)
+    mine = extended(contactor, SEEN)
+    opposite = extended(target, 1 + math.ceil(float(SEEN * facet_sizes(contactor).max() / facet_sizes(target).min())))
+    one, other = ((more.surface, None if held is None else held.turned(more)) for more in (mine, opposite))
+    return _between(one, other, share, reach, couple)[: len(contactor)]
+
+
+def _between(
+    mine: tuple[Surface, Held | None], opposite: tuple[Surface, Held | None], share: float, reach: float, couple: Couple
+) -> Array:
+    """The same of surfaces as they are, contactor and target, each with the points of it that supports hold."""
+    (contactor, held), (target, of_target) = mine, opposite
     outward, mirrors = _upright(contactor, held)
     if share == 0.0:
         return outward
     try:
-        other, _ = _upright(target, held)
+        other, _ = _upright(target, of_target)
     except InputError:  # a facet without a normal at a node: the contactor may still see the others
         return outward
     normals = common_normals(contactor, target, outward, other, share, reach, couple)

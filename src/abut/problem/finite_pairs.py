@@ -23,6 +23,7 @@ from abut.problem.dual_functions import Mixture
 from abut.problem.held_multipliers import held, without_held
 from abut.problem.pair import Moving, Pair
 from abut.problem.scales import scales
+from abut.problem.sector_sides import has_own_ends
 
 
 def finite_pairs(model: Model, constraints: Constraints) -> list[Pair]:
@@ -55,7 +56,8 @@ def finite_pair(model: Model, contact: Contact, constraints: Constraints) -> Pai
     )  # fmt: skip
     coupling = couple(contactor, target, degree, options, across=moving.contactor)
     whole = replace(coupling, weight=full_moments(contactor, degree).ravel(), mass=facet_products(contactor, degree))
-    space = without_held(pressure_space(name, contactor, whole), contactor, whole, constraints)
+    own = replace(contactor, turned=None) if has_own_ends(contact, contactor, True) else contactor
+    space = without_held(pressure_space(name, own, whole), contactor, whole, constraints)
     sizes, both = facet_sizes(contactor), scales(model, contactor, target)
     size, n = float(np.median(sizes)), len(space)
     if not space.ordinary:

@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 from abut.contact.function_places import places
 from abut.contact.pressure_space import PressureSpace, only
 from abut.contact.tangential import SlipOperators, frames
+from abut.contact.turned_functions import by_turn
 from abut.mesh.surface import Surface
 from abut.problem.constraints import Constraints
 from abut.problem.held_multipliers import NO_EFFECT, row_norms
 from abut.problem.pair import Slip
 from abut.problem.relative_motion import passing
-from abut.types import Sparse
+from abut.types import Array, Sparse
 
 
 @dataclass(frozen=True)
@@ -54,13 +55,12 @@ def friction_rows(
     normals = -outward
     past = passing(pair.contactor, pair.target, space.node, normals, pair.reach, constraints)
     tangents, free = frames(normals, past.moves)
-    fields = [(space.transfer.T @ part).tocsr() for part in operators.along]
+    fields = _fields(pair.contactor, space, operators, tangents)
     index, first = np.full((n, dim), -1), n
     index[:, 0] = np.arange(n)
     rows, components, carried = [normal], [space], list[NDArray[np.bool_]]()
     for b in range(dim - 1):
-        parts = fields if dim == 2 else [sp.diags(tangents[:, b, a]) @ fields[a] for a in range(dim)]
-        part = sum(parts[1:], parts[0]).tocsr()
+        part = fields[b]
         keep = free[:, b] if pair.move else free[:, b] & _seen(part, space.weight, constraints)
         rows.append(part[keep])
         components.append(only(space, keep))
@@ -69,6 +69,22 @@ def friction_rows(
         first += int(keep.sum())
     slip = Slip(operators, tangents, points, normals, pair.at_facets)
     return FrictionRows(tuple(components), index, sp.vstack(rows).tocsr(), slip, np.concatenate(carried))
+
+
+def _fields(contactor: Surface, space: PressureSpace, operators: SlipOperators, tangents: Array) -> list[Sparse]:
+    """Rows (n, dim n_points) of the slip along each of the functions' tangents (n, dim - 1, dim), which beyond the side of a
+    sector are turned."""
+    if contactor.dim == 2:  # along the surface, whichever way it goes
+        return [(space.transfer.T @ part).tocsr() for part in operators.along]
+    turned = [
+        (tangents @ turn.T, [(part.T @ along).tocsr() for along in operators.along])
+        for turn, part in by_turn(contactor, space.node, space.transfer)
+    ]
+    result = []
+    for b in range(2):
+        parts = [sp.diags(way[:, b, a]) @ fields[a] for way, fields in turned for a in range(3)]
+        result.append(sum(parts[1:], parts[0]).tocsr())
+    return result
 
 
 def _seen(rows: Sparse, weight: NDArray[np.float64], constraints: Constraints) -> NDArray[np.bool_]:

@@ -6,14 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from abut.io.deck.faces import connectivity
 from abut.io.deck.groups import Groups
 from abut.io.deck.reasons import DeckError
 from abut.io.deck.record import CyclicSymmetry, Deck, Numbers
+from abut.sectors import matched
 
-NEAR = 1e-3  # of the surface: distance within which nodes on two sides of a sector count as the same
 TINY = 1e-12  # of the largest coefficient: a term that is none
 Vector = NDArray[np.float64]
 
@@ -40,19 +39,16 @@ def partners(deck: Deck, groups: Groups, symmetry: CyclicSymmetry) -> Partners:
         nodes[side] = np.intersect1d(side_nodes, groups.used)
     a, axis = np.array(symmetry.a), np.array(symmetry.b) - np.array(symmetry.a)
     x, y = (deck.points[np.searchsorted(deck.nodes, nodes[side])] for side in (symmetry.slave, symmetry.master))
-    size = float(np.ptp(np.concatenate([x, y]), axis=0).max())
-    tried = [_turn(axis, sign * 2.0 * np.pi / symmetry.sectors) for sign in (1.0, -1.0)]
-    found = [tuple(map(np.asarray, cKDTree((y - a) @ turn.T).query(x - a))) for turn in tried]
-    best = int(found[1][0].max() < found[0][0].max())
-    (distance, match), turn = found[best], np.where(np.abs(tried[best]) < TINY, 0.0, tried[best])
-    if distance.max() > NEAR * size or len(set(match.tolist())) < len(match):
-        worst = int(nodes[symmetry.slave][int(distance.argmax())])
+    found = matched(x, y, symmetry.sectors, a, axis)
+    if not found.fits:
+        worst = int(nodes[symmetry.slave][int(found.distance.argmax())])
         raise DeckError(
             symmetry.place,
             f"*CYCLIC SYMMETRY MODEL: node {worst} of '{symmetry.slave}' has no partner on "
             f"'{symmetry.master}' one sector on; mesh both sides alike",
         )
-    return Partners(nodes[symmetry.slave], nodes[symmetry.master][match], turn, best == 0)
+    turn = np.where(np.abs(found.turn) < TINY, 0.0, found.turn)
+    return Partners(nodes[symmetry.slave], nodes[symmetry.master][found.match], turn, found.forward)
 
 
 def turned_side(deck: Deck, groups: Groups) -> Numbers:
@@ -72,10 +68,3 @@ def turned_side(deck: Deck, groups: Groups) -> Numbers:
     if what:
         raise DeckError(place, f"*CYCLIC SYMMETRY MODEL: nodal diameters other than 0 are not found where {what}")
     return slaves
-
-
-def _turn(axis: Vector, angle: float) -> Vector:
-    """Rotation matrix (Rodrigues)."""
-    e = axis / np.linalg.norm(axis)
-    cross = np.array([[0.0, -e[2], e[1]], [e[2], 0.0, -e[0]], [-e[1], e[0], 0.0]])
-    return np.asarray(np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross)
