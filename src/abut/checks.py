@@ -118,6 +118,11 @@ def listed(values: object, where: str, what: str = "records") -> tuple[Any, ...]
     return tuple(values)
 
 
+def names(values: object, where: str) -> tuple[str, ...]:
+    """The same of names."""
+    return tuple(text(value, where) for value in listed(values, where, "names"))
+
+
 def records(values: object, where: str, kinds: tuple[type, ...]) -> tuple[Any, ...]:
     """A list of records of some ``kinds`` as a tuple. Raises InputError for anything else, with its place."""
     result = listed(values, where)

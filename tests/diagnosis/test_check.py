@@ -16,7 +16,7 @@ import abut
 from abut.bodies.factor_memory import MEMORY
 from abut.cells import CELLS
 from abut.cli import main
-from abut.diagnosis import Finding, Report, check
+from abut.diagnosis import Finding, Report, check, from_error
 from abut.diagnosis.cost import foresee
 from abut.diagnosis.quality import quality
 from abut.errors import InputError
@@ -437,3 +437,16 @@ def test_time_with_friction_counts_the_onset_of_slip() -> None:
         text, steps = foreseen(friction, **solve)
         assert steps == count
         assert "load steps; a run finds them" not in text
+
+
+@pytest.mark.parametrize(
+    ("said", "where", "what"),
+    [
+        ("start.time: expected a time; give one", "start.time", "expected a time"),
+        ("start: no steps of another job; model both", "start", "no steps of another job"),
+        ("a.msh: line 3; mend it", "job", "a.msh: line 3"),
+    ],
+)
+def test_places_of_errors_are_said_once(said: str, where: str, what: str) -> None:
+    finding = from_error(InputError(said), where.partition(".")[0])
+    assert (finding.where, finding.what, finding.cure) == (where, what, said.partition("; ")[2])

@@ -23,6 +23,7 @@ from abut.analysis.node_fields import node_fields
 from abut.analysis.overlap import covered_elsewhere, overlaps
 from abut.analysis.penetrations import penetration_results
 from abut.analysis.preloads import preload_results
+from abut.analysis.reactions import reactions
 from abut.analysis.response import beyond_rounding, grows
 from abut.analysis.stress_error import stress_error
 from abut.analysis.surface_stress import loaded_points, normal_stress
@@ -130,7 +131,7 @@ def step_result(
         displacement=end.nodal,
         stress=stress,
         reaction=(end.reaction + end.sprung).reshape(-1, model.dim).sum(axis=0),
-        reactions=_reactions(end, by_supports),
+        **vars(reactions(model, constraints.bodies, by_supports, end.nodal)),
         load=assembled.loaded.resultant @ balance.factors + end.following.reshape(-1, model.dim).sum(axis=0),
         contacts=contacts,
         axisymmetric=model.mesh.axisymmetric,
@@ -160,12 +161,6 @@ def step_result(
         nodal_reaction=end.reaction.reshape(-1, model.dim),
     )
     return step, acting
-
-
-def _reactions(end: _End, forces: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
-    model, bodies = end.problem.model, end.problem.constraints.bodies
-    names = dict.fromkeys([*(support.on for support in model.supports), *(hold.on for hold in model.holds)])
-    return {on: forces[_with_bodies(model.mesh.nodes_of(on), bodies)].sum(axis=0) for on in names}
 
 
 def _end(assembled: Assembled, attempt: Attempt) -> _End:
@@ -386,12 +381,6 @@ def _flips(balance: Balance, attempt: Attempt) -> dict[str, Flips]:
 def _rounding(balance: Balance, free: NDArray[np.float64]) -> float:
     """Force that free displacements (n_free,) in double precision leave open: eps sum K_ii |u_i|."""
     return float(np.finfo(float).eps * (balance.diagonal @ np.abs(free)))
-
-
-def _with_bodies(nodes: NDArray[np.int64], bodies: Sequence[RigidBody]) -> NDArray[np.int64]:
-    """Nodes, and all of the rigid bodies they belong to: what holds one point of those holds the whole."""
-    touched = [body.nodes for body in bodies if body.holds and np.isin(nodes, body.nodes).any()]
-    return np.unique(np.concatenate([nodes, *touched]))
 
 
 def _largest_pressures(n_pairs: int, steps: Sequence[Step]) -> list[float]:

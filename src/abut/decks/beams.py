@@ -161,7 +161,7 @@ def _coupling(node: int, sections: list[Made], rigid: bool, place: Place) -> Cou
     mean = len(sections) == 1 and not rigid
     every = np.sort(_corners(sections[0])) if mean else _all(sections)
     name = f"section {node}" if mean else f"knot {node}"
-    return Coupling(name, mean, node, "", every, frozenset(range(1, 7)), None, place)
+    return Coupling(name, mean, node, "", every, frozenset(range(1, 7)), None, place, thin=True)
 
 
 def _turned(deck: Deck, kinds: tuple[str, ...]) -> set[int]:

@@ -70,12 +70,21 @@ def couplings(deck: Deck, groups: Groups, plane: str | None) -> list[Coupling]:
                 radius=bound.radius,
                 axes=None if bound.orientation is None or follow is None else local_axes(bound.orientation, axes),
                 mirrors=None,
+                supports=(),
                 **motion.values,
                 amplitude=motion.amplitude,
                 amplitudes=motion.amplitudes,
             )
         )
     return result
+
+
+def held_by(deck: Deck, made: Sequence[Coupling], names: Mapping[int, tuple[str, ...]]) -> list[Coupling]:
+    """Couplings of a deck with the names of the supports that hold their references, nodes of shells and beams."""
+    return [
+        replace(coupling, supports=names.get(bound.reference, ()))
+        for coupling, bound in zip(made, merged(deck.couplings))
+    ]
 
 
 def components(plane: str | None) -> tuple[str, ...]:

@@ -21,13 +21,14 @@ def expanded(deck: Deck, finite: bool) -> Deck:
 
     Raises InputError for what has no section or no size, and for what cannot be said of solids."""
     made, middles, ends = quadratic(with_planes_held(deck))
-    return thickened(made, middles, ends, finite)
+    return thickened(made, middles, ends, finite, rigid=True)
 
 
-def thickened(deck: Deck, middles: Numbers, ends: Numbers, finite: bool) -> Deck:
+def thickened(deck: Deck, middles: Numbers, ends: Numbers, finite: bool, rigid: bool) -> Deck:
     """The same of one with quadratic shells. middles: (m,) nodes that were added in the middle of edges, whose ``ends`` are
-    (m, 2): on linear solids they go with both ends, as the edge of the solid does; not in a knot, which is rigid."""
-    new = with_thick_trusses(with_thick_beams(with_thick_shells(deck, finite), finite))
+    (m, 2): on linear solids they go with both ends, as the edge of the solid does; not in a knot, which is rigid. rigid:
+    shells keep their thickness where their nodes are held or loaded, as in CalculiX."""
+    new = with_thick_trusses(with_thick_beams(with_thick_shells(deck, finite, rigid), finite))
     new = with_thick_membranes(new)
     rows = [block.nodes.ravel() for block in deck.blocks if not block.type.thin]
     on = np.isin(ends, np.unique(np.concatenate(rows))).all(axis=1) if rows else np.zeros(len(ends), bool)

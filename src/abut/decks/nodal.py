@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from abut.decks.temperatures import history
@@ -12,6 +14,7 @@ from abut.model import Amplitude, Equation, Load, NodalForce, Support, Term
 from abut.types import Json
 
 AXES = "xyz"
+Names = Mapping[int, tuple[str, ...]]
 
 
 def supports(bound: Bonds, groups: Groups) -> list[Support]:
@@ -38,15 +41,29 @@ def supports(bound: Bonds, groups: Groups) -> list[Support]:
     return result
 
 
-def equations(bound: Bonds, groups: Groups) -> list[Equation]:
-    """Linear constraints."""
+def equations(bound: Bonds, groups: Groups, names: Names) -> list[Equation]:
+    """Linear constraints. names: of the supports of nodes of shells, beams and trusses."""
     return [
         Equation(
             tuple(Term(groups.node_set(np.array([n]), f"n{n}"), AXES[k], c) for (n, k), c in bond.terms.items()),
             *history(bond.course),
+            names.get(bond.holds, ()),
         )
         for bond in bound.bonds
     ]
+
+
+def thin_supports(bound: Bonds, groups: Groups, start: int) -> Names:
+    """The names of the supports of nodes of shells, beams and trusses, those held alike together: sets of the solids' nodes.
+    start: how many others there are."""
+    alike: dict[tuple[tuple[int, Course], ...], list[int]] = {}
+    for node, held in bound.held.items():
+        alike.setdefault(held.courses, []).append(node)
+    result: dict[int, tuple[str, ...]] = {}
+    for i, nodes in enumerate(alike.values(), start=start + 1):
+        every = np.unique([n for node in nodes for n in bound.held[node].nodes])
+        result |= dict.fromkeys(nodes, (groups.node_set(every, f"support-{i}"),))
+    return result
 
 
 def forces(bound: Bonds, groups: Groups, plane: str | None, thickness: float) -> list[Load]:

@@ -23,8 +23,9 @@ CARD = "*SHELL SECTION"
 Vector = NDArray[np.float64]
 
 
-def with_thick_shells(deck: Deck, finite: bool) -> Deck:
-    """The deck with its shells, of quadratic elements, expanded. ``finite``: at large displacements.
+def with_thick_shells(deck: Deck, finite: bool, rigid: bool) -> Deck:
+    """The deck with its shells, of quadratic elements, expanded. ``finite``: at large displacements; ``rigid``: where nodes
+    are held or loaded the thickness stays as it is.
 
     Raises InputError for shells without a thickness or with cells that have no area, and for springs on their nodes."""
     deck = by_section(deck)
@@ -50,12 +51,12 @@ def with_thick_shells(deck: Deck, finite: bool) -> Deck:
         raise DeckError(
             block.place, f"*ELEMENT: shell {block.ids[cell]} has no area at one of its nodes; mend the mesh"
         ) from None
-    return _with_solids(deck, blocks, solid, finite)
+    return _with_solids(deck, blocks, solid, finite, rigid)
 
 
-def _with_solids(deck: Deck, blocks: list[Block], solid: Expanded, finite: bool) -> Deck:
+def _with_solids(deck: Deck, blocks: list[Block], solid: Expanded, finite: bool, rigid: bool) -> Deck:
     number = free_numbers(deck, len(solid.points), [rows for _, cells in solid.cells for rows in cells])
-    thin = _thin(deck, solid, number)
+    thin = _thin(deck, solid, number, rigid)
     if finite:
         _check_turned(deck, thin)
     knots = [node for node, each in thin.items() if each.along is None]
@@ -69,11 +70,12 @@ def _with_solids(deck: Deck, blocks: list[Block], solid: Expanded, finite: bool)
 
 
 def _knot(deck: Deck, block: Block, node: int, nodes: Numbers) -> Coupling:
-    return Coupling(f"knot {node}", False, node, "", nodes, frozenset(range(1, 7)), None, block.place)
+    return Coupling(f"knot {node}", False, node, "", nodes, frozenset(range(1, 7)), None, block.place, thin=True)
 
 
-def _thin(deck: Deck, solid: Expanded, number: Numbers) -> dict[int, Thin]:
-    """What stands for each node of the deck that shells have."""
+def _thin(deck: Deck, solid: Expanded, number: Numbers, rigid: bool) -> dict[int, Thin]:
+    """What stands for each node of the deck that shells have: the mean over the thickness, where that is ``rigid`` of both
+    sides."""
     result: dict[int, Thin] = {}
     start = np.searchsorted(solid.director, np.arange(len(solid.node) + 1))
     for i, own in enumerate(solid.node.tolist()):
@@ -82,9 +84,15 @@ def _thin(deck: Deck, solid: Expanded, number: Numbers) -> dict[int, Thin]:
         ends = (each[0][0], each[-1][0])
         if node in result:
             result[node] = Thin((*result[node].nodes, *ends))
-        else:
-            x, y, z = solid.normal[i].tolist()
-            result[node] = Thin(ends, (x, y, z), float(solid.thickness[i]), tuple(each[1:-1]))
+            continue
+        x, y, z = solid.normal[i].tolist()
+        nodes, weights = ends, (0.5, 0.5)
+        if not rigid:
+            row = slice(solid.mean.indptr[i], solid.mean.indptr[i + 1])
+            mean = dict(zip(number[solid.mean.indices[row]].tolist(), solid.mean.data[row].tolist()))
+            nodes = (ends[0], *(n for n in mean if n not in ends), ends[1])
+            weights = tuple(mean[n] for n in nodes)
+        result[node] = Thin(nodes, (x, y, z), float(solid.thickness[i]), tuple(each[1:-1]), weights, rigid)
     return result
 
 

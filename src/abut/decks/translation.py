@@ -13,7 +13,7 @@ from abut.contact.sides import bodies_of, find_sides
 from abut.decks.adjusting import adjusted
 from abut.decks.body_loads import body_loads
 from abut.decks.clearance import bilateral_note, gap_options
-from abut.decks.couplings import beside_notes, couplings, reference_loads, reference_nodes, unlisted_notes
+from abut.decks.couplings import beside_notes, couplings, held_by, reference_loads, reference_nodes, unlisted_notes
 from abut.decks.elastic import elastic_law
 from abut.decks.element_notes import element_notes
 from abut.decks.expanded import expanded
@@ -22,7 +22,7 @@ from abut.decks.holds import holds
 from abut.decks.large import finite_notes, is_finite, load_steps, plastic_steps, unsupported, yields
 from abut.decks.metal import metal_law
 from abut.decks.modes import loading_notes, modes, with_stiff_beams
-from abut.decks.nodal import equations, forces, supports
+from abut.decks.nodal import equations, forces, supports, thin_supports
 from abut.decks.output import output_options, tables, with_tables
 from abut.decks.overclosure import overclosure_notes, own_laws, softened
 from abut.decks.passing import passing_notes, removals
@@ -144,8 +144,8 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
         solids=solids,
         contacts=contacts,
         rigid=rigid,
-        couplings=bound,
-        **vars(prescribed),
+        couplings=held_by(deck, bound, prescribed.names),
+        **{name: value for name, value in vars(prescribed).items() if name != "names"},
         plane=plane,
         kinematics="finite" if finite else "small",
         modes=vibrations,
@@ -198,13 +198,14 @@ def _referenced(
 
 @dataclass(frozen=True)
 class _Prescribed:
-    """What acts on the bodies of a deck."""
+    """What acts on the bodies of a deck; names: of the supports of nodes of shells, beams and trusses."""
 
     supports: list[Support]
     equations: list[Equation]
     loads: list[Load]
     springs: list[Spring]
     holds: list[Hold]
+    names: dict[int, tuple[str, ...]]
 
 
 def _prescribed(
@@ -215,14 +216,15 @@ def _prescribed(
     thick = 1.0
     with reasons.gathered():
         thick = thickness(deck, plane, notes)
-    result = _Prescribed([], [], [], [], [])
+    result = _Prescribed([], [], [], [], [], {})
     with reasons.gathered():
         result.springs.extend(springs(deck, groups, plane, thick, modulus))
     with reasons.gathered():
         bound = bonds(deck, groups, plane)
         result.supports.extend(supports(bound, groups))
         result.holds.extend(holds(bound, groups))
-        result.equations.extend(equations(bound, groups))
+        result.names.update(thin_supports(bound, groups, len(result.supports)))
+        result.equations.extend(equations(bound, groups, result.names))
         result.loads.extend(forces(bound, groups, plane, thick))
     with reasons.gathered():
         result.loads.extend(reference_loads(deck, references, plane, thick))

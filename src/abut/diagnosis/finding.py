@@ -71,6 +71,9 @@ def in_order(findings: Sequence[Finding]) -> tuple[Finding, ...]:
 
 
 def from_error(error: AbutError, where: str) -> Finding:
-    """What an error of abut says, as a finding; its message ends in the cure."""
-    what, _, cure = str(error).rpartition("; ")
+    """What an error of abut says, as a finding; its message ends in the cure and may begin with a place in ``where``."""
+    text = str(error)
+    if text.startswith((f"{where}:", f"{where}.")):
+        where, _, text = text.partition(": ")
+    what, _, cure = text.rpartition("; ")
     return Finding("error", where, what or cure, cure if what else "", status=error.exit_status)

@@ -24,6 +24,8 @@ JOINING: dict[str, dict[str, str]] = {
         "ry": "rotation about y; left out: free [radian]",
         "rz": "rotation about z (in 2D the only one); left out: free [radian]",
         "amplitudes": "of single components, { y = [...], rz = [...] }: pairs of time and factor; others follow amplitude",
+        "supports": "node sets, surfaces or bodies that it holds: forces on their points are in forces.csv "
+        "by these names, too",
     },
     "ConnectorTable": {
         "name": "a name of your choice, for results",

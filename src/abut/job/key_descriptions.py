@@ -264,6 +264,7 @@ MEANINGS: dict[str, dict[str, str]] = {
     "EquationTable": {
         "terms": "terms of the sum that is prescribed",
         "value": "what the sum of coefficient times displacement equals [length]",
+        "supports": "node sets, surfaces or bodies that it supports: its forces are in forces.csv by these names",
     },
     "TermTable": {
         "on": "node set of one node, or a point's number",

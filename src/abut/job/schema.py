@@ -101,6 +101,7 @@ class EquationTable(Table):
     terms: list[TermTable]
     value: Number = 0.0
     amplitude: Points | None = None
+    supports: list[str] = []
 
 
 class RigidTable(Table):
@@ -138,6 +139,7 @@ class CouplingTable(Table):
     rz: Number | None = None
     amplitude: Points | None = None
     amplitudes: dict[str, Points] = {}
+    supports: list[str] = []
 
 
 Law = Annotated[

@@ -215,6 +215,9 @@ class Equation:
         The sum [length, if coefficients are numbers].
     amplitude : Amplitude, optional
         Factor over time; the ramp where left out.
+    supports : sequence of str
+        Node sets, surfaces or bodies that it supports: its forces on their points count among the reactions by these names,
+        not among those of what joins points.
 
     Raises
     ------
@@ -231,8 +234,10 @@ class Equation:
     terms: tuple[Term, ...]
     value: float = 0.0
     amplitude: History = None
+    supports: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "supports", checks.names(self.supports, "equation: supports"))
         object.__setattr__(self, "terms", checks.listed(self.terms, "equation: terms", "terms"))
         for i, term in enumerate(self.terms):
             checks.instance(term, Term, f"equation: terms[{i}]", "a term (abut.Term)")

@@ -141,9 +141,16 @@ def check_rigid(mesh: Mesh, bodies: Sequence[Rigid]) -> None:
         owner |= dict.fromkeys(nodes, rigid.body)
 
 
+def check_supported(mesh: Mesh, names: Sequence[str], where: str) -> None:
+    """Raise InputError for names of what equations or couplings support that nothing has."""
+    for name in names:
+        checks.known(name, [*mesh.surfaces, *mesh.node_sets, *mesh.bodies], where, "surface, node set or body")
+
+
 def check_equations(mesh: Mesh, equations: Sequence[Equation]) -> None:
-    """Raise InputError for terms at no point, or at several, and components that do not exist."""
+    """Raise InputError for terms at no point, or at several, components that do not exist, and supports on nothing."""
     for i, equation in enumerate(equations):
+        check_supported(mesh, equation.supports, f"equations[{i}].supports")
         for j, term in enumerate(equation.terms):
             where = f"equations[{i}].terms[{j}]"
             if isinstance(term.on, str):

@@ -14,6 +14,7 @@ from abut.bodies.loads import area_weights
 from abut.errors import InputError
 from abut.mesh.mesh import Mesh
 from abut.model.conditions import COMPONENTS, TURNS, Amplitude, History, Rigid, check_motion
+from abut.model.consistency import check_supported
 
 KINDS = ("kinematic", "distributing")
 AT_MEAN = 1e-9  # of the points' extent: a reference that is their mean
@@ -59,6 +60,9 @@ class Coupling:
         Of all these over time.
     amplitudes : mapping of str to Amplitude
         Of some of them, by name.
+    supports : sequence of str
+        Node sets, surfaces or bodies that it holds: the forces on their points count among the reactions by these names,
+        too.
 
     Raises
     ------
@@ -89,9 +93,11 @@ class Coupling:
     rz: float | None = None
     amplitude: History = None
     amplitudes: Mapping[str, Amplitude] = field(default_factory=dict)
+    supports: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         where = f"coupling '{self.name}'"
+        object.__setattr__(self, "supports", checks.names(self.supports, f"{where}: supports"))
         checks.text(self.name, f"{where}: name")
         checks.choice(self.kind, f"{where}: kind", KINDS)
         check_motion(self, where)
@@ -191,6 +197,7 @@ def check_couplings(mesh: Mesh, couplings: Sequence[Coupling], rigid: Sequence[R
         where = f"couplings[{i}]"
         checks.known(coupling.on, [*mesh.surfaces, *mesh.node_sets], f"{where}.on", "surface or node set")
         _check_name(mesh, coupling, taken, where)
+        check_supported(mesh, coupling.supports, f"{where}.supports")
         for name in coupling.given:
             if name not in exist and getattr(coupling, name):
                 plane = "axisymmetric" if mesh.axisymmetric else "2D"

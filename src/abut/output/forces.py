@@ -19,16 +19,18 @@ def table(solution: Solution) -> str:
     """A row for each step and each support, coupling, rigid body, connector, spring and preload: motion, and force (moment)
     that holds or moves it.
 
-    Of a support (surface, node set or body) the displacement is the mean of its nodes, and the force the sum of theirs; of
-    couplings and rigid bodies both are those of the reference. Rotations and moments of supports are empty. Free components
-    have no force. Of a preload the displacement is its shortening along the normal of the section, force and moment what the
-    side before the section exerts on that beyond it. Of a connector there are its free motions, force and moment about the
-    joint on the body ``on``, and what its stop and drive do along the first motion."""
+    Of a support (surface, node set or body) the displacement is the mean of its nodes, the force the sum of theirs, and the
+    moment that about their mean; of couplings and rigid bodies all are those of the reference. Rotations of supports are
+    empty. Free components have no force. Of a preload the displacement is its shortening along the normal of the section,
+    force and moment what the side before the section exerts on that beyond it. Of a connector there are its free motions,
+    force and moment about the joint on the body ``on``, and what its stop and drive do along the first motion."""
     dim = solution.model.dim
     axes, turns = "xyz"[:dim], "z" if dim == 2 else "xyz"
     head = ["step", "factor", "converged", "kind", "name"]
     head += [f"{name}_{axis}" for name in ("displacement", "force") for axis in axes]
-    if solution.model.referenced or solution.model.preloads:
+    model = solution.model
+    turning = bool(model.referenced or model.preloads or any(equation.supports for equation in model.equations))
+    if turning:
         head += [f"{name}_{axis}" for name in ("rotation", "moment") for axis in turns]
     free = list(dict.fromkeys(name for joint in solution.model.connectors for name in joint.motions))
     joints = [*free, "stop", "drive"] if solution.model.connectors else []
@@ -37,11 +39,14 @@ def table(solution: Solution) -> str:
     rows = csv.writer(text, lineterminator="\n")
     rows.writerow(head)
     empty, beside = [""] * (len(head) - 5 - 2 * dim), [""] * len(joints)
+    none = [""] * len(turns)
     nodes = {name: solution.model.mesh.nodes_of(name) for name in solution.steps[0].reactions}
     for step in solution.steps:
         for name, own in nodes.items():
             motion = step.displacement[own].mean(axis=0) if len(own) else np.zeros(dim)
-            rows.writerow([*_step(step), "support", name, *motion.tolist(), *step.reactions[name].tolist(), *empty])
+            moment = step.moments[name].tolist() if name in step.moments else none
+            values = [*motion.tolist(), *step.reactions[name].tolist(), *([*none, *moment] if turning else []), *beside]
+            rows.writerow([*_step(step), "support", name, *values])
         for body in solution.model.referenced:
             kind, own_name = ("coupling" if isinstance(body, Coupling) else "rigid body"), body.name
             result = step.rigid[own_name]

@@ -263,6 +263,7 @@ def _step_summary(step: Step) -> Json:
         "contact_residual": last.contact_residual,
         "reaction": step.reaction.tolist(),
         "reactions": {name: force.tolist() for name, force in step.reactions.items()},
+        "moments": {name: moment.tolist() for name, moment in step.moments.items()},
         "load": step.load.tolist(),
         "balance_error": step.balance_error,
         "max_displacement": float(np.linalg.norm(step.displacement, axis=1).max()),

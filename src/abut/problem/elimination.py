@@ -46,7 +46,7 @@ class Eliminated:
 class Links:
     """What the forces of equations follow from. outer: (dim n_points, n) the unknowns before equations; matrix: (m, m) the
     coefficients of the m constraints that were eliminated, at the unknowns ``pivots`` they were solved for; equations:
-    (m, dim n_points) coefficients on all displacements of those that are equations."""
+    (m, dim n_points) coefficients on all displacements of those that are equations and support nothing."""
 
     outer: Sparse
     matrix: Sparse
@@ -54,7 +54,7 @@ class Links:
     equations: Sparse
 
     def forces(self, residual: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The share of equations in the forces (dim n_points,) that hold the points."""
+        """The share of these equations in the forces (dim n_points,) that hold the points."""
         if not len(self.pivots):
             return np.zeros_like(residual)
         multipliers = spla.splu(self.matrix.T.tocsc()).solve((self.outer.T @ residual)[self.pivots])

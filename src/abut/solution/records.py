@@ -88,9 +88,9 @@ class Step:
 
     displacement: (n_points, dim); stress: (n_points, 6) recovered at the points, xx yy zz xy yz zx;
     reaction: (dim,) resultant of all supports, equations and prescribed motions of rigid bodies; reactions: the same for
-    each supported surface or node set without the share of equations (points that lie on several count for each of them,
-    those of a rigid body for the whole body); load: (dim,) resultant of all
-    loads; rigid: by the name of the body.
+    each supported surface or node set without the share of equations that join points (points that lie on several count for
+    each of them, those of a rigid body for the whole body); moments: (1,) or (3,) of these about the mean of their points;
+    load: (dim,) resultant of all loads; rigid: by the name of the body.
     """
 
     number: int
@@ -103,6 +103,7 @@ class Step:
     reactions: Mapping[str, NDArray[np.float64]]
     load: NDArray[np.float64]
     contacts: tuple[ContactResult, ...]
+    moments: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
     axisymmetric: bool = False  # then x is radial: its sums run round the axis, and hoop stress takes part
     cycling: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)  # contact name -> facets that cycle
     flips: Mapping[str, Flips] = field(default_factory=dict)  # contact name -> nodes that do, with friction

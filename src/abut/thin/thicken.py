@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 
 from abut import checks
 from abut.cells import CELLS
-from abut.decks.couplings import couplings, reference_loads, reference_nodes
+from abut.decks.couplings import couplings, held_by, reference_loads, reference_nodes
 from abut.decks.expanded import thickened
 from abut.decks.nodal import equations, forces
 from abut.decks.nodal import supports as supports_of
 from abut.errors import InputError, nearest
 from abut.fields import evaluate
 from abut.io.deck.groups import Groups
-from abut.io.deck.nodal_constraints import bonds
+from abut.io.deck.nodal_constraints import Bonds, bonds
 from abut.io.deck.reasons import DeckError
 from abut.io.deck.record import Block, Deck
 from abut.io.raw import RawMesh
@@ -100,13 +100,15 @@ def made_solid(
     ]
     try:
         middles = np.arange(len(deck.nodes) - len(parts.ends), len(deck.nodes)) + 1
-        deck = thickened(prescribed(deck, values), middles, parts.ends + 1, finite)
+        deck = thickened(prescribed(deck, values), middles, parts.ends + 1, finite, rigid=False)
         groups = _groups(deck, parts, sections)
         bound = bonds(deck, groups, None)
         joined = couplings(deck, groups, None)
         names = dict(zip([coupling.name for coupling in joined], reference_nodes(deck)))
         given = (*forces(bound, groups, None, 1.0), *reference_loads(deck, names, None, 1.0))
-        holding, bonded = tuple(supports_of(bound, groups)), tuple(equations(bound, groups))
+        told = _names(groups, bound, parts, held)
+        joined = held_by(deck, joined, told)
+        holding, bonded = tuple(supports_of(bound, groups)), tuple(equations(bound, groups, told))
     except DeckError as error:
         raise InputError(f"{where}: {error.text}" if error.place == PLACE else f"{error}") from None
     solid = groups.raw()
@@ -139,6 +141,17 @@ def _groups(deck: Deck, parts: Sorted, sections: Mapping[str, Thin]) -> Groups:
         if len(nodes):
             groups.new_node_set(nodes, name)
     return groups
+
+
+def _names(groups: Groups, bound: Bonds, parts: Sorted, held: Sequence[MidSupport]) -> dict[int, tuple[str, ...]]:
+    """Of each node that is held the groups that supports are on; that of a shell of layers as a set of nodes."""
+    result: dict[int, tuple[str, ...]] = {}
+    for on in dict.fromkeys(entry.on for entry in held):
+        nodes = [n for n in _nodes(parts, on, "supports").tolist() if n in bound.held]
+        if nodes and on not in groups:
+            groups.new_node_set(np.unique([n for node in nodes for n in bound.held[node].nodes]), on)
+        result |= {node: (*result.get(node, ()), on) for node in nodes}
+    return result
 
 
 def _nodes(parts: Sorted, on: str, where: str) -> Numbers:

@@ -145,6 +145,10 @@ class Groups:
         self._others.add(free)
         return free
 
+    def __contains__(self, name: str) -> bool:
+        """Whether a group has this name."""
+        return name in self._groups
+
     def _add(self, name: str, parts: dict[str, Numbers], ending: str = "body") -> str:
         free, count = name, 1
         while free in self._groups or free in self._others:

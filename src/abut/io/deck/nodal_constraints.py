@@ -27,19 +27,33 @@ NO_DRILL = "has a moment about the normal of its shell, which nothing resists"
 
 @dataclass(frozen=True)
 class Bond:
-    """A linear constraint: the sum of coefficient times displacement over (node, axis) follows ``course``."""
+    """A linear constraint: the sum of coefficient times displacement over (node, axis) follows ``course``. holds: the node
+    of a shell, beam or truss that it supports, 0 for none."""
 
     terms: Mapping[Point, float]
     course: Course
     place: Place
+    holds: int = 0
+
+
+@dataclass(frozen=True)
+class Held:
+    """A node of shells, beams or trusses that is held: the solids' nodes over the thickness or in the section, and the
+    course in each direction (0..5)."""
+
+    nodes: tuple[int, ...]
+    courses: tuple[tuple[int, Course], ...]
 
 
 @dataclass(frozen=True)
 class Bonds:
+    """What holds and pushes the nodes of solids; held: the nodes of shells, beams and trusses that do so."""
+
     supports: Mapping[Point, Course]
     bonds: tuple[Bond, ...]
     forces: Mapping[Point, Course]
     passing: Mapping[Point, tuple[Stay, ...]]
+    held: Mapping[int, Held]
 
 
 def bonds(deck: Deck, groups: Groups, plane: str | None) -> Bonds:
@@ -89,7 +103,18 @@ def bonds(deck: Deck, groups: Groups, plane: str | None) -> Bonds:
     kept = [_reduced(bond, known, axes) for bond in (*oblique, *equations)]
     coming = {(int(n), int(d) - 1): each for (n, d), each in stays.items() if d <= axes}
     pushes = {p: c for p, c in forces.items() if p[1] < axes}
-    return Bonds(supports, tuple(b for b in kept if b is not None), pushes, coming)
+    return Bonds(supports, tuple(b for b in kept if b is not None), pushes, coming, _held(deck, lasting, used))
+
+
+def _held(deck: Deck, lasting: Mapping[tuple[float, ...], Course], used: set[int]) -> dict[int, Held]:
+    nodes = {node: each.own for node, each in deck.thin.items()}
+    nodes |= {bound.reference: tuple(bound.nodes.tolist()) for bound in deck.couplings if bound.thin}
+    result: dict[int, list[tuple[int, Course]]] = {}
+    for (number, direction), course in lasting.items():
+        node, axis = int(number), int(direction) - 1
+        if node in nodes and (axis >= 3 or node not in used):  # nodes of solids have supports of their own
+            result.setdefault(node, []).append((axis, course))
+    return {node: Held(nodes[node], tuple(sorted(each))) for node, each in result.items()}
 
 
 @dataclass(frozen=True)
@@ -117,18 +142,23 @@ def _of_thin(
         return _OfThin((), {}), given, pushed
     turned = {point: c for point, c in given.items() if point[0] in deck.thin and point[1] >= 3}
     bonds = [
-        Bond(terms, course, _place(deck, "boundary", (node, 0)))
+        Bond(terms, course, _place(deck, "boundary", (node, 0)), node)
         for node, (terms, course) in turns(deck.thin, turned, local)
     ]
     kept = {point: c for point, c in given.items() if point not in turned}
-    known = {point: None for point in kept if point[0] in deck.thin and point[0] not in used}
+    holds = {point: point[0] for point in kept if point[0] in deck.thin and point[0] not in used}
     places = {node: e.place for e in deck.equations for node, _, _ in e.terms if node in deck.thin}
-    known |= {(node, axis): None for node in {*places, *(used & deck.thin.keys())} for axis in range(3)}
+    others = {(node, axis): 0 for node in {*places, *(used & deck.thin.keys())} for axis in range(3)}
+    known = others | holds
     own = {node: axes for node, axes in local.items() if node not in used}
     place = deck.blocks[0].place
-    bonds += [Bond(terms, NOTHING, places.get(next(iter(terms))[0], place)) for terms in means(deck.thin, known, own)]
-    direct = {point: c for point, c in pushed.items() if point[0] in deck.thin and point not in known and not zero(c)}
-    loaded = [point for point in direct if point[1] < 3]
+    for point, node in known.items():
+        at = places.get(point[0], place)
+        bonds += [Bond(terms, NOTHING, at, node) for terms in means(deck.thin, [point], own)]
+        bonds += [Bond(terms, NOTHING, at, node) for terms in straight(deck.thin, [point], own)]
+    pushes = {point: c for point, c in pushed.items() if point[0] in deck.thin and not zero(c)}
+    direct = {point: c for point, c in pushes.items() if known.get(point, point[0])}
+    loaded = [point for point in direct if point[1] < 3 and point not in known]
     bonds += [Bond(terms, NOTHING, place) for terms in straight(deck.thin, loaded, local)]
     try:
         forces = spread(deck.thin, direct, local)
@@ -263,10 +293,13 @@ def _without_virtual(
 ) -> tuple[list[Bond], dict[Point, Course]]:
     """Equations without nodes of no element, and the nodal forces that do the same work as the forces there.
 
-    Held: the known displacement goes to the right-hand side. Free: one equation says what the displacement is; it goes
-    from the others, and a force F on it pushes the other terms c_i of that equation with -F c_i / c."""
+    Held: the known displacement goes to the right-hand side; of nodes of shells, once others have in their place what they
+    stand for, so that these pull at it and its support holds that. Free: one equation says what the displacement is; it
+    goes from the others, and a force F on it pushes the other terms c_i of that equation with -F c_i / c."""
     pushed: dict[Point, Course] = {}
     bound = {point for bond in equations for point in bond.terms}
+    held = {point: bond for bond in equations if bond.holds for point in bond.terms if point in virtual.supported}
+    equations = [bond if bond.holds else _put_in(bond, held) for bond in equations]
     equations = [_reduced_by(bond, virtual.supported) for bond in equations]
     for point in sorted(p for p in bound if p[0] not in used and p not in virtual.supported):
         having = [i for i, bond in enumerate(equations) if abs(bond.terms.get(point, 0.0)) > 0.0]
@@ -275,13 +308,7 @@ def _without_virtual(
         pivot = equations[having[0]]
         c = pivot.terms[point]
         for i in having[1:]:
-            share = equations[i].terms[point] / c
-            terms = dict(equations[i].terms)
-            for other, value in pivot.terms.items():
-                terms[other] = terms.get(other, 0.0) - share * value
-            terms.pop(point)
-            course = combine([(1.0, equations[i].course), (-share, pivot.course)])
-            equations[i] = replace(equations[i], terms=terms, course=course)
+            equations[i] = _put_in(equations[i], {point: pivot})
         force = virtual.pushed.get(point)
         if force is not None:
             for other, value in pivot.terms.items():
@@ -298,6 +325,19 @@ def _without_virtual(
                     deck, kind, point, f"belongs to no element and no equation in this direction; nothing {what}"
                 )
     return equations, pushed
+
+
+def _put_in(bond: Bond, known: Mapping[Point, Bond]) -> Bond:
+    """A constraint with what others say of points in their place."""
+    for point in [point for point in bond.terms if point in known]:
+        by = known[point]
+        share = bond.terms[point] / by.terms[point]
+        terms = dict(bond.terms)
+        for other, value in by.terms.items():
+            terms[other] = terms.get(other, 0.0) - share * value
+        terms.pop(point)
+        bond = replace(bond, terms=terms, course=combine([(1.0, bond.course), (-share, by.course)]))
+    return bond
 
 
 def _place(deck: Deck, kind: str, point: Point, moving: bool = False) -> Place:

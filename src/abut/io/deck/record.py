@@ -224,7 +224,7 @@ class Coupling:
     """Nodes, or those of a surface ("": none), that move with a reference node: as a rigid body in ``directions`` 1..6, or
     freely with its motion as their mean (distributing), by weights (n,) of the nodes or, None, by area; more: others of the
     same reference; weighted: it is a *DISTRIBUTING COUPLING; radius: beyond which nodes are left out; orientation: axes of
-    ``directions`` 1..3, rectangular, None for the global ones."""
+    ``directions`` 1..3, rectangular, None for the global ones; thin: it stands for a node of a shell or beam."""
 
     name: str
     distributing: bool
@@ -238,6 +238,7 @@ class Coupling:
     weighted: bool = False
     radius: float | None = None
     orientation: Orientation | None = None
+    thin: bool = False
 
 
 @dataclass(frozen=True)

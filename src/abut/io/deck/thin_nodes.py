@@ -21,20 +21,12 @@ Row = tuple[dict[Point, float], Course]
 
 def means(thin: Mapping[int, Thin], wanted: Collection[Point], local: Mapping[int, Vector]) -> list[dict[Point, float]]:
     """Terms whose sum is zero: a node's displacement along an axis (of its own where it has some) less the mean of those
-    that stand for it, and less that of the node in the middle, or what ``straight`` says of those between; for those
-    ``wanted``."""
+    that stand for it, for those ``wanted``."""
     result = []
     for node, axis in wanted:
-        row = local[node][axis] if node in local else np.eye(3)[axis]
         terms: dict[Point, float] = {(node, axis): 1.0}
-        terms |= {(n, k): -c for (n, k), c in _shares(thin[node], row).items()}
+        terms |= {(n, k): -c for (n, k), c in _shares(thin[node], _row(node, axis, local)).items()}
         result.append(terms)
-        inner = thin[node].inner
-        if len(inner) == 1:
-            across = {(inner[0][0], int(k)): -float(row[k]) for k in np.flatnonzero(np.abs(row) > SMALL)}
-            result.append({(node, axis): 1.0} | across)
-        else:
-            result += _between(thin[node], row)
     return result
 
 
@@ -42,14 +34,23 @@ def straight(
     thin: Mapping[int, Thin], wanted: Collection[Point], local: Mapping[int, Vector]
 ) -> list[dict[Point, float]]:
     """Terms whose sum is zero: the displacement along an axis of each node between those that stand for the shell's node
-    less that on the straight line from the first to the last of these."""
-    rows = [(thin[node], local[node][axis] if node in local else np.eye(3)[axis]) for node, axis in wanted]
-    return [terms for each, row in rows for terms in _between(each, row)]
+    less that on the straight line from the first to the last of these. Where the thickness is not rigid the part of the axis
+    along the normal does not count: it changes there as it does inside the shell, which bends over edges that bulge by
+    Poisson's ratio."""
+    return [terms for node, axis in wanted for terms in _between(thin[node], _row(node, axis, local))]
 
 
-def _between(thin: Thin, row: Vector) -> list[dict[Point, float]]:
+def _row(node: int, axis: int, local: Mapping[int, Vector]) -> Vector:
+    return np.asarray(local[node][axis] if node in local else np.eye(3)[axis])
+
+
+def _between(thin: Thin, direction: Vector) -> list[dict[Point, float]]:
+    row = direction
+    if not thin.rigid and thin.along is not None:
+        normal = np.array(thin.along)
+        row = direction - (direction @ normal) * normal
     ends = thin.nodes[0], thin.nodes[-1]
-    return [
+    every = [
         {
             (n, int(k)): c * float(row[k])
             for n, c in ((node, 1.0), (ends[0], share - 1.0), (ends[1], -share))
@@ -57,6 +58,7 @@ def _between(thin: Thin, row: Vector) -> list[dict[Point, float]]:
         }
         for node, share in thin.inner
     ]
+    return [terms for terms in every if terms]
 
 
 def spread(

@@ -9,16 +9,23 @@ HALF = 1e-9  # of the thickness: a node halfway
 
 @dataclass(frozen=True)
 class Thin:
-    """Nodes of solids that stand for a node of a shell: its displacement is their mean, its turn that of the line from the
-    first to the last, ``along`` the unit vector from the former to the latter and ``apart`` their distance; of a knot, whose
-    turn is that of a coupling, None. inner: the nodes between them, which go with those where they are held, and the share
-    of the last in where they are. weights: of the nodes in the mean, which add up to 1; all alike where left out."""
+    """Nodes of solids that stand for a node of a shell: its displacement is their mean, over the thickness, its turn that of
+    the line from the first to the last, ``along`` the unit vector from the former to the latter and ``apart`` their
+    distance; of a knot, whose turn is that of a coupling, None. inner: the nodes between them, which stay on that line where
+    they are held, but for their motion along it where the thickness is not ``rigid``, and the share of the last in where
+    they are. weights: of the nodes in the mean, which add up to 1; all alike where left out."""
 
     nodes: tuple[int, ...]
     along: tuple[float, float, float] | None = None
     apart: float = 0.0
     inner: tuple[tuple[int, float], ...] = ()
     weights: tuple[float, ...] = ()
+    rigid: bool = True
+
+    @property
+    def own(self) -> tuple[int, ...]:
+        """The nodes over the thickness or in the section, without others that the mean takes."""
+        return self.nodes if self.along is None else (self.nodes[0], *(n for n, _ in self.inner), self.nodes[-1])
 
     @property
     def middle(self) -> int:

@@ -11,9 +11,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.mesh.reference import reference_nodes
+from abut.types import Sparse
 
 Numbers = NDArray[np.int64]
 Vector = NDArray[np.float64]
@@ -44,7 +46,8 @@ class Shell:
 class Expanded:
     """Solid cells. points: (p, 3), of each director from the bottom to the top, those in the middle of layers too; director:
     (p,) of each; share: (p,) of the top in where it is between bottom and top; node: (d,) the point that a director stands
-    on; normal: (d, 3); thickness: (d,); cells: for each shell kind and (layers, n, 20 or 15) rows of ``points``."""
+    on; normal: (d, 3); thickness: (d,); cells: for each shell kind and (layers, n, 20 or 15) rows of ``points``; mean:
+    (d, p) weights of the points in the mean displacement over the thickness at each director."""
 
     points: Vector
     director: Numbers
@@ -53,6 +56,7 @@ class Expanded:
     normal: Vector
     thickness: Vector
     cells: tuple[tuple[str, Numbers], ...]
+    mean: Sparse
 
 
 def expand(points: Vector, shells: Sequence[Shell]) -> Expanded:
@@ -79,12 +83,50 @@ def expand(points: Vector, shells: Sequence[Shell]) -> Expanded:
     height = (share - 0.5 - offset[first][column]) * thick[column]
     at = points[stands][column] + height[:, None] * mean[column]
     sizes = np.cumsum([shell.cells.size for shell in shells])[:-1]
-    own = [start[d].reshape(s.cells.shape) for s, d in zip(shells, np.split(director, sizes))]
+    own = [d.reshape(s.cells.shape) for s, d in zip(shells, np.split(director, sizes))]
     cells = tuple(
-        (SOLID[s.kind], np.stack([_solid(first + 2 * k, s.kind in LINEAR) for k in range(len(s.layers) - 1)]))
-        for s, first in zip(shells, own)
+        (SOLID[s.kind], np.stack([_solid(start[rows] + 2 * k, s.kind in LINEAR) for k in range(len(s.layers) - 1)]))
+        for s, rows in zip(shells, own)
     )
-    return Expanded(at, column, share, stands, mean, thick, cells)
+    return Expanded(at, column, share, stands, mean, thick, cells, _means(own, start, column, share))
+
+
+def _means(cells: Sequence[Numbers], start: Numbers, column: Numbers, share: Vector) -> Sparse:
+    """The mean over the thickness of what the solids' functions make of points, (d, p), as a sparse matrix.
+
+    cells: rows of directors; start: (d,) the first point of each; column, share: as ``Expanded`` has director and share. At
+    corners of the shell's cells displacements are a parabola over each layer (Simpson's rule). In the middle of an edge a
+    layer has no point in its middle: on the face of eight nodes over the edge they are the line between both points, and
+    half of how far the parabolas at both ends rise over theirs."""
+    count, corner = len(start), np.zeros(len(start), bool)
+    for rows in cells:
+        corner[rows[:, : rows.shape[1] // 2]] = True
+    lower = np.flatnonzero((np.diff(share, append=0.0) > 0.0) & (np.arange(len(share)) - start[column] & 1 == 0))
+    own, high = column[lower], share[lower + 2] - share[lower]  # layers by their points lower, lower + 1, lower + 2
+    line = sp.coo_array(
+        (np.tile(high / 2.0, 2), (np.tile(own, 2), np.concatenate([lower, lower + 2]))), (count, len(share))
+    ).tocsr()
+    rise = sp.coo_array(
+        (
+            np.concatenate([-high / 3.0, 2.0 * high / 3.0, -high / 3.0]),
+            (np.tile(own, 3), np.concatenate([lower, lower + 1, lower + 2])),
+        ),
+        (count, len(share)),
+    ).tocsr()
+    ends: dict[int, tuple[int, int]] = {}
+    for rows in cells:
+        half = rows.shape[1] // 2
+        for k in range(half):
+            ends |= {
+                middle: (a, b)
+                for a, b, middle in rows[:, [k, (k + 1) % half, half + k]].tolist()
+                if middle not in ends and not corner[middle]
+            }
+    middles, pairs = list(ends), np.array(list(ends.values()), np.int64).reshape(-1, 2)
+    at = np.concatenate([np.flatnonzero(corner), np.repeat(middles, 2).astype(np.int64)])
+    of = np.concatenate([np.flatnonzero(corner), pairs.ravel()])
+    weight = np.concatenate([np.ones(int(corner.sum())), np.full(pairs.size, 0.5)])
+    return (line + sp.coo_array((weight, (at, of)), (count, count)).tocsr() @ rise).tocsr()
 
 
 def _apart(shells: Sequence[Shell]) -> Numbers:
