@@ -182,7 +182,7 @@ def _describe(pairs: Sequence[Pair], note: Callable[[str], None]) -> None:
         if p.repeated:
             note(
                 f"contact '{p.contact.name}': equations or rigid bodies move points of its surfaces together; where its "
-                "pressure is one of many, the smallest is taken"
+                "pressure is one of many, a small one is taken"
             )
 
 
