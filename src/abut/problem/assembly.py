@@ -74,7 +74,7 @@ def assemble(
     clock.mark("assembly")
     observe(Phase("cutting and integrating the interface"))
     every = finite_pairs(model, constraints) if model.finite else pairs(model, constraints, backend.couple)
-    _describe(every, note)
+    _describe(every, model.finite, note)
     for idle in idle_loads(model):
         note(f"{idle.where}: {idle.what}, and does nothing there; {idle.cure}")
     clock.mark("interface")
@@ -190,7 +190,7 @@ def _own(model: Model, taken: Sequence[str]) -> list[Term]:
     return terms
 
 
-def _describe(pairs: Sequence[Pair], note: Callable[[str], None]) -> None:
+def _describe(pairs: Sequence[Pair], finite: bool, note: Callable[[str], None]) -> None:
     for p in pairs:
         facets = len(p.contactor)
         covered = int((p.coupling.segments > 0).sum())
@@ -201,7 +201,7 @@ def _describe(pairs: Sequence[Pair], note: Callable[[str], None]) -> None:
         if p.repeated:
             note(
                 f"contact '{p.contact.name}': equations or rigid bodies move points of its surfaces together; where its "
-                "pressure is one of many, the smallest is taken"
+                f"pressure is one of many, {'a small one' if finite else 'the smallest'} is taken"
             )
 
 

@@ -99,7 +99,7 @@ class Restraint:
     ) -> NDArray[np.bool_]:
         """As ``complete``, with what bodies meet first on the way on which the loads move them, one body after another: of a
         wheel with backlash the flanks that a torque turns together, not those that it turns apart. gap: not finite where
-        there is nothing to meet."""
+        there is nothing to meet. Without it ``test_a_torque_turns_a_wheel_through_its_backlash`` fails."""
         if self.by_supports or self._holds(active):
             return active
         result = active.copy()
