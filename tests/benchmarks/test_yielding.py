@@ -9,34 +9,39 @@ import numpy as np
 import pytest
 
 import abut
-from abut.benchmarks.plastic import BENCHMARKS, _indented
+from abut.benchmarks import necking, plastic_joints
+from abut.benchmarks.plastic import BENCHMARKS
 from abut.benchmarks.record import Benchmark, run
 from abut.materials.plastic import EQUIVALENT
 from abut.output.restart import load_steps, save_step
 
 QUICK = [one for one in BENCHMARKS if one.name.startswith(("plastic-cylinder", "plastic-sphere", "plastic-press"))]
-SLOW = [one for one in BENCHMARKS if one not in QUICK]
+JOINTS = [*plastic_joints.BENCHMARKS, *necking.BENCHMARKS]
+QUICK += [one for one in JOINTS if one.name.startswith(("plastic-stack", "plastic-press", "considere"))]
+SLOW = [one for one in (*BENCHMARKS, *JOINTS) if one not in QUICK]
 
 
 @pytest.mark.parametrize("benchmark", QUICK, ids=lambda one: one.name)
-def test_radial(benchmark: Benchmark) -> None:
+def test_quick(benchmark: Benchmark) -> None:
     for outcome in run(benchmark):
         assert outcome.passed, outcome
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("benchmark", SLOW, ids=lambda one: one.name)
-def test_balls(benchmark: Benchmark) -> None:
+def test_slow(benchmark: Benchmark) -> None:
     for outcome in run(benchmark):
         assert outcome.passed, outcome
 
 
-@pytest.mark.exhaustive
-@pytest.mark.parametrize(("depth", "force"), [(10.0, 25.4), (20.0, 61.9)])
-def test_deeply_indented(depth: float, force: float) -> None:
-    """The same half space pressed in farther: own axisymmetric elements, with which Kogut and Etsion agree within 3 %."""
-    (outcome,) = run(_indented(depth, force))
-    assert outcome.passed, outcome
+@pytest.mark.long
+def test_a_neck_is_followed() -> None:
+    """A bar beyond its largest load, whose tangent takes all of it to flow on while most of it unloads: by extrapolation
+    30 steps take some 400 iterations (from the tangent 5 000)."""
+    solution = abut.solve(necking.bar(necking.THINNER, (5, 15), necking.DRAWN, 30))
+    assert solution.converged
+    assert len(solution.steps) == 30
+    assert sum(len(step.iterations) for step in solution.steps) <= 600
 
 
 def test_finite_strains_meet_small_ones() -> None:

@@ -187,6 +187,49 @@ def _indented(depth: float, force: float) -> Benchmark:
     )
 
 
+# Ball and half space of one metal: each yields as under a rigid ball of twice the radius at half the depth, so that half of
+# E / (1 - nu^2) gives four times the force, twice the width and four times the depth at first yield
+BOTH_FORCE, BOTH_WIDTH, BOTH_DEPTH = 4.0 * FIRST_FORCE, 2.0 * FIRST_WIDTH, 4.0 * FIRST_DEPTH
+BOTH_AGREED = (
+    "cells of a quarter of the first contact radius; a ball of 91 of these radii is held at its middle, which a half space "
+    "is not: less than 1 %"
+)
+
+
+def _both_indented(depth: float, force: float) -> Benchmark:
+    def model(level: int) -> Model:
+        h, zone, far = BOTH_WIDTH / 4.0 / 2**level, 1.1 * BOTH_WIDTH * np.sqrt(2.0 * depth), 900.0 * BOTH_WIDTH
+        n, deep = int(np.ceil(zone / h)), 1.2 * zone
+        fine = {"x": [0.0, zone], "y": [-deep, 0.0]}
+        ground = rectangle((0.0, far), (-far, 0.0), (n, int(1.2 * n)), "quad4", fine, 1.3)
+        edge = -90.0 + np.rad2deg(zone / RADIUS)
+        ball = ring(
+            (0.01 * RADIUS, RADIUS), (-90.0, 0.0), (0.0, RADIUS), (int(1.2 * n), int(1.2 * n)), "quad4",
+            {"x": [RADIUS - deep, RADIUS], "y": [-90.0, edge]}, 1.3,
+        )  # fmt: skip
+        metal = Plastic(YOUNG, POISSON, BALL_YIELD)
+        return Model(
+            join({"ground": ground, "ball": ball}),
+            [Solid("ground", metal), Solid("ball", metal)],
+            [
+                Support("ground.bottom", y=0), Support("ground.left", x=0), Support("ground.right", x=0),
+                Support("ball.start", x=0), Support("ball.end", y=-depth * BOTH_DEPTH),
+            ],
+            contacts=[Contact("ground.top", "ball.outer")],
+            plane="axisymmetric",
+            solve=SolveOptions(steps=int(4 * depth)),
+        )  # fmt: skip
+
+    return Benchmark(
+        f"plastic-ball-and-half-space-{depth:g}",
+        f"half space and ball of the same metal, pressed together {depth:g} times as far as where they yield first",
+        model,
+        lambda solution: {"force": abs(float(solution.contacts[0].force[1])) / BOTH_FORCE},
+        {"force": Reference(force, 0.03, f"{INDENTED}; the same of both by symmetry", BOTH_AGREED)},
+    )
+
+
+INDENTATIONS = ((2.0, 2.755), (5.0, 9.93), (10.0, 25.4), (20.0, 61.9))  # depth and force, over those at first yield
 BENCHMARKS = (
     _cylinder(0.20, 165.5099, 0.120619),
     _cylinder(0.40, 191.1704, 0.224524),
@@ -194,6 +237,6 @@ BENCHMARKS = (
     _unloaded(),
     _sphere(160.0, 303.6817, 0.269836, 0.08192),
     *(_press_fit(*pair) for pair in ((0.08, 137.962), (0.15, 206.533), (0.30, 239.291))),
-    _indented(2.0, 2.755),
-    _indented(5.0, 9.93),
+    *(_indented(*pair) for pair in INDENTATIONS),
+    *(_both_indented(*pair) for pair in INDENTATIONS),
 )

@@ -59,10 +59,13 @@ class LargeSteps:
         self._stands_in = None
 
     def _guess(self, begin: Begin, pace: Pace) -> State | None:
-        """By extrapolation, where that tells something; without contact the tangent at the last state tells more."""
+        """By extrapolation, where that tells something. Without contact the tangent at the last state tells more, unless
+        metal flows: the tangent has all of it go on flowing, and a bar that necks lets most of itself go."""
         problem, before, earlier = self._problem, begin.before, begin.earlier
         tried = begin.cuts >= (self._control.settings.steps.careful if problem.restraint.by_supports else 1)
-        if tried or pace.turned or earlier is None or is_dragged(before) or not problem.pairs:
+        if tried or pace.turned or earlier is None or is_dragged(before):
+            return None
+        if not (problem.pairs or before.history.arrays):
             return None
         if before.time <= earlier.time:  # a drag has led on without time
             return None
