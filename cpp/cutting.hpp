@@ -6,6 +6,7 @@
 #include "kin.hpp"
 #include "lines.hpp"
 #include "tree.hpp"
+#include "walls.hpp"
 
 namespace abut {
 
@@ -228,7 +229,7 @@ struct Interface {
   const Options &options;
   std::vector<Facet> targets;
   std::vector<Hull> hulls;
-  std::vector<std::array<double, 3>> normals; // in the middle of each, where the target may be a body all round
+  Neighbours neighbours;
   Tree tree;
 };
 
@@ -242,11 +243,18 @@ inline Interface interface(const Planned &contactor, const Planned &target, cons
     targets[t] = surface.facet(t);
     hulls[t] = Hull(targets[t], targets[t].x), boxes[t] = box_of(hulls[t], surface.dim);
   }
-  std::vector<std::array<double, 3>> normals(surface.kin ? surface.facets : 0);
-  for (std::size_t t = 0; t < normals.size(); ++t)
+  std::vector<std::array<double, 3>> normals(surface.facets);
+  for (std::size_t t = 0; t < surface.facets; ++t)
     middle_normal(targets[t], normals[t].data());
   Tree tree(std::move(boxes), surface.dim);
-  return {contactor, target, rules, options, std::move(targets), std::move(hulls), std::move(normals), std::move(tree)};
+  return {contactor,
+          target,
+          rules,
+          options,
+          std::move(targets),
+          std::move(hulls),
+          Neighbours(surface, std::move(normals)),
+          std::move(tree)};
 }
 
 // Cuts contactor facets, one after another; one for each thread.
@@ -291,8 +299,11 @@ private:
             std::min(far, deepest(both_.contactor.surface, f, both_.target.surface, std::size_t(t)))};
   }
 
-  // Says what each segment is for. add(own, plane) gives the plane that touches a segment its corners.
+  // Leaves out walls, and says what each segment is for. add(own, plane) gives the plane that touches a segment its
+  // corners.
   template <class Add> void cast(std::size_t f, const Facet &c, Add add) {
+    std::erase_if(segments_,
+                  [&](const Segment &own) { return both_.neighbours.wall(own.target, own.x, own.n, own.gap); });
     double deep = 0;
     for (Segment &own : segments_) {
       own.role = role_of(both_.contactor.surface, f, both_.target.surface, std::size_t(own.target));
@@ -322,7 +333,7 @@ private:
     add(own, plane);
     return std::any_of(sides_.begin(), sides_.end(), [&](int t) {
       return same_body(both_.target.surface, std::size_t(t), std::size_t(own.target)) &&
-             plane.shows_through(both_.targets[t], both_.normals[t].data(), -own.gap);
+             plane.shows_through(both_.targets[t], both_.neighbours.normal(t), -own.gap);
     });
   }
 

@@ -52,6 +52,40 @@ def test_what_is_beside_a_body_does_not_see_its_far_side(cell: str) -> None:
     assert points.gap.min() == pytest.approx(DIP, rel=1e-6)
 
 
+@pytest.mark.parametrize("angle", [4.0, 9.0, 15.0])
+@pytest.mark.parametrize("cell", ["quad4", "quad8", "hex8", "tet10"])
+def test_walls_of_what_stands_on_an_edge_are_beside_it(cell: str, angle: float) -> None:
+    """A block on its lower edge, tilted. Under its wall, which is as steep as 90 degrees less the tilt, the plate sees
+    nothing: the gap there would grow six times as fast as the way along the plate, and the edge would have to lie deep in
+    the plate for the mean over a function to close. With the whole block as target all is as with its bottom."""
+    solid = cell in ("tet10", "hex8")
+    depth = [[0, 0.4]] if solid else []
+    plate = (make.box if solid else make.rectangle)([0, 2.0], *depth, [0, 0.3], (5, *[2] * solid, 2), cell)
+    block = (make.box if solid else make.rectangle)([0, 0.8], *depth, [0, 0.6], (4, *[2] * solid, 3), cell)
+    points, turn = block.points.copy(), np.deg2rad(angle)
+    along, up = block.points[:, 0] - 0.8, block.points[:, -1]
+    points[:, 0] = 1.33 + np.cos(turn) * along + np.sin(turn) * up
+    points[:, -1] = 0.3 - np.sin(turn) * along + np.cos(turn) * up
+    mesh = make.join({"plate": plate, "block": replace(block, points=points)})
+    top = "plate.top"
+    whole, bottom = (seen(mesh, top, name, 0.7) for name in ("block", "block.bottom"))
+    assert whole.gap.max() < 0.8 * np.sin(turn) / np.cos(turn) + 1e-9
+    assert whole.gap == pytest.approx(bottom.gap, abs=1e-12)
+
+
+@pytest.mark.parametrize("cell", ["quad4", "quad8"])
+def test_a_knife_sees_a_whole_plate_as_it_sees_its_top(cell: str) -> None:
+    """Both faces of a blade see the plate under 78 degrees, and the plate's ends, far away, face them much more: no wall is
+    beside an edge that presses."""
+    plate = make.rectangle([0, 2.0], [0, 0.3], (9, 2), cell)
+    blade = make.rectangle([-1, 1], [0.0, 1.0], (2, 4), cell)
+    points = blade.points * [0.01, 1.0] + blade.points[:, 1:] * blade.points[:, :1] * [0.21, 0.0] + [1.03, 0.299]
+    mesh = make.join({"plate": plate, "blade": replace(blade, points=points)})
+    whole, top = (seen(mesh, "blade", name, 0.7) for name in ("plate", "plate.top"))
+    assert len(top.gap) > 12
+    assert whole.gap == pytest.approx(top.gap, abs=1e-12)
+
+
 @pytest.mark.parametrize("depth", [0.02, 0.1, 0.2])
 def test_what_is_deep_in_another_counts(depth: float) -> None:
     """A block far in a wider one, from above: its bottom is as deep as it is, to its edges, however deep."""
