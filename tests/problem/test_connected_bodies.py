@@ -131,6 +131,24 @@ def test_a_lever_presses_a_block(kinematics: str) -> None:
     assert step.balance_error <= step.balance_limit
 
 
+@pytest.mark.parametrize("friction", [0.0, 0.2])
+@pytest.mark.parametrize("kinematics", ["small", "finite"])
+def test_a_lever_is_driven_onto_a_block(kinematics: str, friction: float) -> None:
+    """A prescribed turn presses the end down by about 9.5 times the angle, before any force acts that residuals could be
+    judged by: few iterations, and the hinge has the contact's force."""
+    drive = Joint("h", "hinge", "lever", at=(0, 2), motion=-0.002)
+    model = lever_and_block(kinematics, moment=0.0)
+    model = replace(model, connectors=[drive], contacts=[replace(model.contacts[0], friction=friction)])
+    solution = abut.solve(model)
+    step, force = solution.steps[-1], np.array(solution.contacts[0].force)
+    assert step.converged
+    assert sum(len(each.iterations) for each in solution.steps) <= 15
+    assert step.connectors["h"].force == pytest.approx(force, abs=1e-6 * np.abs(force).max())
+    assert step.connectors["h"].drive == pytest.approx(9.5 * force[1], rel=0.02)
+    work = next((check for check in solution.certificate if check.name == "energy balance"), None)
+    assert work is None or work.passed
+
+
 def test_steps_that_go_on() -> None:
     """A run that goes on after its second step ends as the whole one, turns beyond half a turn included."""
     model = lever_and_block("finite", moment=0.0)

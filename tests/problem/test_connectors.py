@@ -11,9 +11,9 @@ import pytest
 
 import abut
 from abut.errors import ConvergenceError, InputError, SingularModelError
+from abut.jets import Jet, angle, cross, dot
 from abut.problem.assembly import connected
 from abut.problem.constraints import supports
-from abut.problem.jets import Jet, angle, cross, dot
 from abut.problem.terms import Motion
 from models.mechanisms import flat, solid
 
@@ -282,7 +282,7 @@ def test_what_nothing_holds_is_named() -> None:
     ({"motion": 1.0, "load": 2.0}, "the free motion is prescribed by motion"),
     ({"stiffness": -1.0}, "stiffness: expected a number > 0"),
     ({"axis2": (0, 0, 1)}, 'axis2 goes with kind = "universal"'),
-    ({"kind": "ball", "limits": (-1, 1)}, "a ball joint has no single free motion"),
+    ({"kind": "ball", "limits": (-1, 1)}, 'kind = "ball" has no single free motion'),
 ])  # fmt: skip
 def test_refused(keys: dict[str, Any], said: str) -> None:
     with pytest.raises(InputError, match=said):
@@ -291,9 +291,9 @@ def test_refused(keys: dict[str, Any], said: str) -> None:
 
 @pytest.mark.parametrize(("keys", "said"), [
     ({"on": "lefer"}, r"connectors\[0\]\.on: no rigid body or coupling named 'lefer'.* mean 'lever'"),
-    ({"kind": "ball"}, "the model is 2D, where hinge, slider, slot are known"),
+    ({"kind": "ball"}, "the model is 2D, where hinge, slider, slot, distance"),
     ({"kind": "slider"}, "axis: it is missing"),
-    ({"axis": (0, 0, 1)}, "hinges turn about its normal"),
+    ({"axis": (0, 0, 1)}, "a hinge is about its normal"),
     ({"at": (0, 0, 0)}, r"connectors\[0\]\.at: expected 2 numbers"),
 ])  # fmt: skip
 def test_refused_by_the_model(keys: dict[str, Any], said: str) -> None:

@@ -18,6 +18,7 @@ from abut.decks.elastic import elastic_law
 from abut.decks.element_notes import element_notes
 from abut.decks.expanded import expanded
 from abut.decks.friction import friction_options, path_notes
+from abut.decks.gathered import connectors
 from abut.decks.holds import holds
 from abut.decks.large import finite_notes, is_finite, load_steps, plastic_steps, unsupported, yields
 from abut.decks.metal import metal_law
@@ -49,6 +50,7 @@ from abut.mesh.mesh import Mesh
 from abut.mesh.read import build
 from abut.model import (
     Buckling,
+    Connector,
     Contact,
     Coupling,
     Equation,
@@ -206,6 +208,7 @@ class _Prescribed:
     springs: list[Spring]
     holds: list[Hold]
     names: dict[int, tuple[str, ...]]
+    connectors: list[Connector]
 
 
 def _prescribed(
@@ -216,9 +219,11 @@ def _prescribed(
     thick = 1.0
     with reasons.gathered():
         thick = thickness(deck, plane, notes)
-    result = _Prescribed([], [], [], [], [], {})
+    result = _Prescribed([], [], [], [], [], {}, [])
     with reasons.gathered():
         result.springs.extend(springs(deck, groups, plane, thick, modulus))
+    with reasons.gathered():
+        result.connectors.extend(connectors(deck, groups, plane, thick))
     with reasons.gathered():
         bound = bonds(deck, groups, plane)
         result.supports.extend(supports(bound, groups))
@@ -237,7 +242,7 @@ def _prescribed(
 def _idle(deck: Deck, groups: Groups) -> list[str]:
     """Supports that hold nothing: nodes that do not exist, or that nothing is made of; cards without effect."""
     made = {*groups.used.tolist(), *deck.thin}
-    made |= {n for e in deck.equations for n, _, _ in e.terms}
+    made |= {n for e in deck.equations for n, _, _ in e.terms} | {found.pilot for found in deck.gathered}
     made |= deck.references.union(*(spring.ends.ravel().tolist() for spring in deck.springs))
     given = set(deck.nodes.tolist())
     notes: dict[str, None] = {}

@@ -30,11 +30,14 @@ JOINING: dict[str, dict[str, str]] = {
     "ConnectorTable": {
         "name": "a name of your choice, for results",
         "kind": "hinge: turns about its axis; slider: travels along it; cylindrical: both; universal: about axis and axis2; "
-        "ball: turns all ways; slot: travels along the axis and turns all ways; in 2D hinge, slider, slot",
-        "on": "name of the rigid body or coupling; motions and forces are its own, relative to to",
+        "ball: turns all ways; slot: travels along the axis and turns all ways; between points: straight, plane, "
+        "distance, mean-turn; in 2D no cylindrical, universal, ball, plane",
+        "on": "name of the rigid body or coupling, whose motions and forces relative to to are reported; between points: of "
+        "a surface or node set",
         "to": "another one, which the axis turns with; left out: the ground",
         "at": "where the joint is, undeformed; left out: the reference of on [length]",
-        "axis": "direction of the axis, undeformed, of any length; none of a ball joint, nor of a hinge in 2D",
+        "axis": "direction of the axis, undeformed, of any length; none of ball, straight, plane, distance, nor in 2D of "
+        "hinge and mean-turn",
         "axis2": "universal: axis on the side of on, perpendicular to axis",
         "limits": "lower and upper limit of the free motion, which begins at 0; either may be inf [radian, or length]",
         "motion": "prescribed free motion [radian, or length]",

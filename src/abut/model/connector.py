@@ -25,11 +25,18 @@ MOTIONS: dict[
     "universal": ("turn", "turn2"),
     "ball": (),
     "slot": ("travel",),
+    "distance": ("travel",),
+    "straight": (),
+    "plane": (),
+    "mean-turn": ("turn",),
 }
 KINDS = tuple(MOTIONS)
-PLANE = ("hinge", "slider", "slot")  # those of plane models
+PLANE = ("hinge", "slider", "slot", "distance", "straight", "mean-turn")  # those of plane models
+LEAST = {"distance": 2, "straight": 3, "plane": 4, "mean-turn": 2}  # points of those that are between points of a set
 HELD = {"hinge": 5, "slider": 5, "cylindrical": 4, "universal": 4, "ball": 3, "slot": 2}  # motions that each takes
 HELD_IN_PLANE = {"hinge": 2, "slider": 2, "slot": 1}
+NO_AXIS = ("ball", "straight", "plane", "distance")
+ABOUT = ("hinge", "mean-turn")  # in plane models about the normal
 SQUARE = 1e-6  # cosine of the angle between two axes that are perpendicular
 
 
@@ -37,6 +44,7 @@ SQUARE = 1e-6  # cosine of the angle between two axes that are perpendicular
 class Connector:
     """A joint between two reference points, those of rigid bodies or couplings, or between one and the ground.
 
+    Between points of a surface or node set, with no ``to``, are "straight", "plane", "distance" and "mean-turn". Of joints
     ``axis`` belongs to what the joint is on the side of ``to``: with finite kinematics it turns with that body, and the
     ground's stays. Motions and forces are those of ``on`` relative to ``to``.
 
@@ -49,6 +57,10 @@ class Connector:
     "universal"    the point, and the axes perpendicular to each other     turn, turn2           turn
     "ball"         the point                                               all turns
     "slot"         the point on the axis                                   travel, all turns     travel
+    "straight"     points on a line
+    "plane"        points in a plane
+    "distance"     nothing by itself: two points                           travel apart          travel
+    "mean-turn"    nothing by itself: points around an axis                their mean turn       turn
     =============  ======================================================  ====================  =======================
 
     Parameters
@@ -56,15 +68,16 @@ class Connector:
     name : str
         Of the connector.
     kind : str
-        As above; in plane models "hinge", "slider" and "slot".
+        As above; in plane models "hinge", "slider", "slot", "straight", "distance" and "mean-turn".
     on : str
-        A rigid body or coupling.
+        A rigid body or coupling; of connectors between points a surface or node set.
     to : str, optional
         Another one; left out: the ground.
     at : (dim,) of float, optional
         Where the joint is, undeformed [length]; the reference of ``on`` where left out.
     axis : (dim,) of float, optional
-        Of any length; of every kind but "ball", and in plane models "hinge".
+        Of any length; of joints but "ball", of "mean-turn", whose axis keeps its direction and goes through the middle of
+        the points; in plane models of "slider" and "slot" alone.
     axis2 : (3,) of float, optional
         Of "universal": that on the side of ``on``, perpendicular to ``axis``.
     limits : (float, float), optional
@@ -127,8 +140,11 @@ class Connector:
         check_amplitude(self.amplitude, where)
 
     def _check_axes(self, where: str) -> None:
-        if self.kind == "ball" and self.axis is not None:
-            raise InputError(f"{where}: axis: a ball joint has none; leave axis out")
+        if self.kind in NO_AXIS and self.axis is not None:
+            raise InputError(f'{where}: axis: kind = "{self.kind}" has none; leave axis out')
+        if self.of_points and (self.to or self.at is not None):
+            key = "to" if self.to else "at"
+            raise InputError(f'{where}: {key}: kind = "{self.kind}" is between the points of on; leave {key} out')
         if (self.axis2 is not None) != (self.kind == "universal"):
             what = "give the axis on the side of on" if self.kind == "universal" else "leave axis2 out"
             raise InputError(f'{where}: axis2 goes with kind = "universal"; {what}')
@@ -143,7 +159,9 @@ class Connector:
     def _check_motion(self, where: str) -> None:
         given = [key for key in ("limits", "motion", "load", "stiffness") if getattr(self, key) is not None]
         if given and not self.motions:
-            raise InputError(f"{where}: {given[0]}: a ball joint has no single free motion; leave {given[0]} out")
+            raise InputError(
+                f'{where}: {given[0]}: kind = "{self.kind}" has no single free motion; leave {given[0]} out'
+            )
         if self.motion is not None and len(given) > 1:
             other = next(key for key in given if key != "motion")
             raise InputError(f"{where}: {other}: the free motion is prescribed by motion; give one of them")
@@ -166,13 +184,21 @@ class Connector:
         motion, load and stiffness."""
         return MOTIONS[self.kind]
 
-    def held(self, dim: int) -> int:
-        """How many relative motions it takes, without limits and what is prescribed."""
-        return HELD[self.kind] if dim == 3 else HELD_IN_PLANE[self.kind]
+    @property
+    def of_points(self) -> bool:
+        """Whether it is between points of a set."""
+        return self.kind in LEAST
 
-    def multipliers(self, dim: int) -> int:
+    def held(self, mesh: Mesh) -> int:
+        """How many relative motions it takes, without limits and what is prescribed."""
+        if self.of_points:
+            more = len(mesh.nodes_of(self.on)) - LEAST[self.kind] + 1
+            return {"straight": more * (mesh.dim - 1), "plane": more}.get(self.kind, 0)
+        return HELD[self.kind] if mesh.dim == 3 else HELD_IN_PLANE[self.kind]
+
+    def multipliers(self, mesh: Mesh) -> int:
         """How many there are: one for each motion that it takes, one for limits, one for what is prescribed."""
-        return self.held(dim) + (self.limits is not None) + (self.motion is not None)
+        return self.held(mesh) + (self.limits is not None) + (self.motion is not None)
 
 
 @dataclass(frozen=True)
@@ -185,7 +211,7 @@ class Multipliers:
         """One, where there are connectors."""
         if not self.connectors:
             return []
-        return [Field(FIELD, sum(c.multipliers(mesh.dim) for c in self.connectors), 1, FIELD)]
+        return [Field(FIELD, sum(c.multipliers(mesh) for c in self.connectors), 1, FIELD)]
 
 
 def check_connectors(
@@ -202,8 +228,11 @@ def check_connectors(
         taken.add(connector.name)
         if mesh.axisymmetric:
             raise InputError(f"{where}: axisymmetric models have no connectors; prescribe y of the body or coupling")
+        if connector.of_points:
+            checks.known(connector.on, [*mesh.surfaces, *mesh.node_sets], f"{where}.on", "surface or node set")
+            _check_count(len(mesh.nodes_of(connector.on)), connector, where)
         for key, name in (("on", connector.on), ("to", connector.to)):
-            if name:
+            if name and not connector.of_points:
                 checks.known(name, by_name, f"{where}.{key}", "rigid body or coupling")
                 _check_body(mesh, by_name[name], connector, finite, f"{where}.{key}")
         if mesh.dim == 2 and connector.kind not in PLANE:
@@ -213,17 +242,24 @@ def check_connectors(
         _check_directions(mesh.dim, connector, where)
 
 
+def _check_count(count: int, connector: Connector, where: str) -> None:
+    least = LEAST[connector.kind]
+    if count < least or (connector.kind == "distance" and count > least):
+        more = "" if connector.kind == "distance" else " or more"
+        raise InputError(f"{where}.on: '{connector.on}' has {count} points; a {connector.kind} has {least}{more}")
+
+
 def _check_directions(dim: int, connector: Connector, where: str) -> None:
     for key in ("at", "axis", "axis2"):
         value: Any = getattr(connector, key)
         if value is not None and len(value) != dim:
-            if key == "axis" and dim == 2 and connector.kind == "hinge":
+            if key == "axis" and dim == 2 and connector.kind in ABOUT:
                 break
             raise InputError(f"{where}.{key}: expected {dim} numbers, got {len(value)}")
-    flat = dim == 2 and connector.kind == "hinge"
+    flat = dim == 2 and connector.kind in ABOUT
     if flat and connector.axis is not None:
-        raise InputError(f"{where}.axis: the model is 2D, where hinges turn about its normal; leave axis out")
-    if connector.axis is None and connector.kind != "ball" and not flat:
+        raise InputError(f"{where}.axis: the model is 2D, where a {connector.kind} is about its normal; leave axis out")
+    if connector.axis is None and connector.kind not in NO_AXIS and not flat:
         raise InputError(f"{where}.axis: it is missing; give the direction of the {connector.kind}'s axis")
 
 

@@ -10,12 +10,12 @@ import scipy.sparse as sp
 
 from abut.bodies.rigid_modes import FREE, SUPPORTED, free_motions
 from abut.errors import SingularModelError, Unsound
+from abut.jets import Jet
 from abut.model import Connector, Model
 from abut.model.connector import FIELD
 from abut.problem.constraints import Constraints
 from abut.problem.free_modes import NO_WORK
-from abut.problem.jets import Jet
-from abut.problem.joints import Joint, joints
+from abut.problem.joints import AnyJoint, joints
 from abut.problem.restraint import Restraint
 from abut.problem.rigid_bodies import RigidBody
 from abut.problem.terms import MatrixTangent, Motion, Share
@@ -43,7 +43,7 @@ class Connectors:
     whose free motion nothing but its limits holds."""
 
     model: Model
-    joints: Sequence[Joint]
+    joints: Sequence[AnyJoint]
     unit: float
     loose: frozenset[int] = frozenset()
     name: str = FIELD
@@ -74,20 +74,21 @@ class Connectors:
             for k, (condition, multiplier) in enumerate(zip(conditions, multipliers[own])):
                 force[n + own.start + k] = self.unit * (-multiplier if condition.open else condition.jet.value)
             sizes[n + own.start : n + own.stop] = self.unit * joint.size
-            couples = np.array([(0.0 if c.open else self.unit) * c.jet.slope for c in conditions])
+            slopes = [(0.0 if c.open else self.unit) * c.jet.slope for c in conditions]
+            couples = np.reshape(slopes, (len(slopes), rows.shape[0]))
             blocks.append((rows, at.bend, couples, np.array([-self.unit if c.open else 0.0 for c in conditions])))
         sizes[:n] = force[:n]
         return Share(force, MatrixTangent(_tangent(blocks, len(force), n)), history, sizes=sizes)
 
-    def _each(self) -> Iterator[tuple[int, Joint, slice]]:
+    def _each(self) -> Iterator[tuple[int, AnyJoint, slice]]:
         """Number, joint, and its multipliers."""
         first = 0
         for number, joint in enumerate(self.joints):
-            last = first + joint.connector.multipliers(self.model.dim)
+            last = first + joint.connector.multipliers(self.model.mesh)
             yield number, joint, slice(first, last)
             first = last
 
-    def _functions(self, joint: Joint, before: Motion, now: Motion) -> tuple[list[Jet], list[Jet], list[float]]:
+    def _functions(self, joint: AnyJoint, before: Motion, now: Motion) -> tuple[list[Jet], list[Jet], list[float]]:
         """As ``Joint.functions``, turns beyond half a turn as they follow what was ``before``; and the free motions. Raises
         Unsound for a step so long that turns, and the way in which a joint closes, are no longer the nearest ones."""
         held, free = joint.functions(joint.rows @ now.displacement)
@@ -102,7 +103,7 @@ class Connectors:
         return held, free, [float(jet.value) for jet in free]
 
     def _conditions(
-        self, number: int, joint: Joint, held: Sequence[Jet], free: Sequence[Jet], multipliers: Array, time: float
+        self, number: int, joint: AnyJoint, held: Sequence[Jet], free: Sequence[Jet], multipliers: Array, time: float
     ) -> list[Condition]:
         """In the order of the multipliers."""
         connector, result = joint.connector, [Condition("held", jet) for jet in held]
@@ -127,7 +128,7 @@ class Connectors:
         return result
 
     def _forces(
-        self, joint: Joint, conditions: Sequence[Condition], free: Sequence[Jet], multipliers: Array, time: float
+        self, joint: AnyJoint, conditions: Sequence[Condition], free: Sequence[Jet], multipliers: Array, time: float
     ) -> Jet:
         """The work whose slopes are the forces of a connector on the points of its joint, against displacements."""
         count = joint.rows.shape[0]
@@ -173,7 +174,8 @@ class Connectors:
                 taken.append(("motion", free[0].times(_length(joint))))
             if connector.stiffness is not None or (limited and connector.limits is not None):
                 taken.append(("limits", free[0].times(_length(joint))))
-            rows.append(sp.csr_matrix(np.array([jet.slope for _, jet in taken])) @ joint.rows)
+            slopes = np.reshape([jet.slope for _, jet in taken], (len(taken), joint.rows.shape[0]))
+            rows.append(sp.csr_matrix(slopes) @ joint.rows)
             names += [(connector, what) for what, _ in taken]
         return sp.vstack(rows, format="csr"), names
 
@@ -184,7 +186,7 @@ class Connectors:
         moved = rows @ motions
         size = np.asarray(abs(rows).sum(axis=1)).ravel()
         moved = moved / np.maximum(size, 1e-300)[:, None]
-        return np.asarray(moved.T @ moved) / rows.shape[0]
+        return np.asarray(moved.T @ moved) / max(rows.shape[0], 1)
 
     def require_held(self, restrained: Restraint, ends: Sequence[Array]) -> None:
         """Raises SingularModelError where loads (dim n_points,) at the end of steps drive a free motion that nothing
@@ -267,7 +269,7 @@ def _to(connector: Connector) -> str:
     return f"'{connector.to}'" if connector.to else "the ground"
 
 
-def _length(joint: Joint) -> float:
+def _length(joint: AnyJoint) -> float:
     """What makes the first free motion a length."""
     return joint.size if joint.connector.motions[0] == "turn" else 1.0
 

@@ -10,9 +10,10 @@ import scipy.sparse as sp
 
 from abut.dofs import dofs_at
 from abut.errors import InputError
+from abut.jets import Jet, angle, cross, dot, linear
 from abut.model import Connector, Model
 from abut.model.coupling import in_line
-from abut.problem.jets import Jet, angle, cross, dot
+from abut.problem.gatherings import Gathering, far_apart, gathering
 from abut.problem.rigid_bodies import RigidBody
 from abut.types import Array, Sparse
 
@@ -101,7 +102,7 @@ class Joint:
         if self.finite:
             return self._functions(moved)
         held, free = self._functions(np.zeros_like(moved))
-        return [_linear(jet, moved) for jet in held], [_linear(jet, moved) for jet in free]
+        return [linear(jet, moved) for jet in held], [linear(jet, moved) for jet in free]
 
     def _functions(self, moved: Array) -> tuple[list[Jet], list[Jet]]:
         count, split = len(moved), self.on.rows.shape[0]
@@ -143,14 +144,13 @@ class Joint:
         return force.sum(axis=0)[:dim], moment if dim == 3 else moment[2:]
 
 
-def _linear(jet: Jet, moved: Array) -> Jet:
-    return Jet.linear(np.asarray(jet.value + jet.slope @ moved), jet.slope)
+AnyJoint = Joint | Gathering
 
 
-def joints(model: Model, bodies: Sequence[RigidBody]) -> list[Joint]:
+def joints(model: Model, bodies: Sequence[RigidBody]) -> list[AnyJoint]:
     """The connectors of a model. Raises InputError for bodies whose points do not say how they turn."""
     by_name = {body.name: body for body in bodies}
-    return [_joint(model, connector, by_name) for connector in model.connectors]
+    return [gathering(model, each) if each.of_points else _joint(model, each, by_name) for each in model.connectors]
 
 
 def joint_loads(model: Model, bodies: Sequence[RigidBody]) -> Array:
@@ -197,7 +197,7 @@ def _side(model: Model, body: RigidBody | None, connector: Connector) -> Side:
             f"connector '{connector.name}': the points of {body.words} lie on one line, which leaves a turn open; couple "
             "points beside the line"
         )
-    chosen = _far_apart(body.points)
+    chosen = far_apart(body.points)
     rest = np.zeros((len(chosen), 3))
     rest[:, :dim] = body.points[chosen]
     picked = dofs_at(body.nodes[chosen], dim).ravel()
@@ -208,14 +208,3 @@ def _side(model: Model, body: RigidBody | None, connector: Connector) -> Side:
     every = dofs_at(body.nodes, dim).ravel()
     place = sp.csr_matrix((np.ones(len(every)), (np.arange(len(every)), every)), shape=(len(every), size))
     return Side(rest, (sp.csr_matrix(moved) @ place).tocsr(), dim)
-
-
-def _far_apart(points: Array) -> list[int]:
-    """Numbers of two points far from each other, and in 3D of a third far from their line."""
-    one = int(np.linalg.norm(points - points.mean(axis=0), axis=1).argmax())
-    other = int(np.linalg.norm(points - points[one], axis=1).argmax())
-    if points.shape[1] == 2:
-        return [one, other]
-    along = points[other] - points[one]
-    third = int(np.linalg.norm(np.cross(points - points[one], along), axis=1).argmax())
-    return [one, third, other]

@@ -149,8 +149,11 @@ class Linearised:
         return np.asarray(residual)
 
     def relative(self, residual: Vector, largest: float) -> Vector:
-        """A residual (n_free,) over the largest force, that of other fields over their own."""
-        return residual / (largest if self.sizes is None else np.maximum(self.sizes, NOTHING))
+        """A residual (n_free,) over the largest force, that of other fields over their own, where anything acts in them at
+        the state that this is near to."""
+        if self.sizes is None:
+            return residual / largest
+        return residual / np.where(self.sizes > 0.0, self.sizes, max(largest, NOTHING))
 
     def gap(self, state: State) -> Vector:
         """Weighted gaps of all multipliers, (n,)."""

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+STILL = 1e-9  # turn in radians, and travel over the largest displacement, that is rounding
+
 
 @dataclass(frozen=True)
 class ConnectorResult:
@@ -21,3 +23,8 @@ class ConnectorResult:
     moment: NDArray[np.float64]
     stop: float | None = None
     drive: float | None = None
+
+    def moves(self, largest: float) -> bool:
+        """Whether there is any motion beyond rounding; largest: displacement in the model."""
+        sizes = {name: largest if name == "travel" else 1.0 for name in self.motion}
+        return any(abs(value) > STILL * sizes[name] for name, value in self.motion.items())

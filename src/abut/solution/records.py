@@ -134,6 +134,12 @@ class Step:
     connectors: Mapping[str, ConnectorResult] = field(default_factory=dict)
     nodal_reaction: NDArray[np.float64] | None = None  # (n_points, dim) of supports and links
 
+    @property
+    def joined(self) -> bool:
+        """Whether connectors move: mechanisms of rigid bodies strain nothing."""
+        far = float(np.abs(self.displacement).max(initial=0.0))
+        return any(joint.moves(far) for joint in self.connectors.values())
+
     def __repr__(self) -> str:
         """The main numbers, in some lines."""
         state = "converged" if self.converged else f"NOT CONVERGED {self.reason}".rstrip()
@@ -300,7 +306,7 @@ class Solution:
     def certificate(self) -> tuple[Check, ...]:
         """Every check of every contact, each at its worst over the steps, and the balance of the whole model."""
         lines: dict[tuple[str, str], list[Check]] = {}
-        idle = driven(self.model) and not any(step.strained or step.grown for step in self.steps)
+        idle = driven(self.model) and not any(step.strained or step.grown or step.joined for step in self.steps)
         response = Check("", "response", float(idle), RESPONSE, "1 where something is prescribed and nothing deforms")
         loaded = forces_act(self.model)
         most = max((step.energy.size for step in self.steps if step.energy is not None), default=0.0)

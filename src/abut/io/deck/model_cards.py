@@ -11,8 +11,9 @@ from abut.errors import nearest
 from abut.io.deck.cards import Card, Line, as_float, as_integer, key, of
 from abut.io.deck.contact_cards import sides
 from abut.io.deck.elastic_cards import elastic, expansion
+from abut.io.deck.gathered import Gathered
 from abut.io.deck.mesh_cards import MeshCards
-from abut.io.deck.multipoint_cards import multipoint
+from abut.io.deck.multipoint_cards import gathered, multipoint
 from abut.io.deck.plastic_cards import hardening
 from abut.io.deck.reasons import Reasons
 from abut.io.deck.record import (
@@ -96,7 +97,7 @@ def _density(card: Card) -> float:
 def equations(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[Equation, ...]:
     """*EQUATION, and *MPC, which are equations between displacements."""
     result: list[Equation] = []
-    finite = any(card.has("NLGEOM") and key(card.get("NLGEOM") or "") != "NO" for card in of(cards, "STEP"))
+    finite = is_finite(cards)
     for card in of(cards, "EQUATION"):
         with reasons.gathered():
             for head, fields in _terms(card):
@@ -104,6 +105,20 @@ def equations(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple
     for card in of(cards, "MPC"):
         with reasons.gathered():
             result += multipoint(card, mesh, finite)
+    return tuple(result)
+
+
+def is_finite(cards: Sequence[Card]) -> bool:
+    """Whether a step has NLGEOM."""
+    return any(card.has("NLGEOM") and key(card.get("NLGEOM") or "") != "NO" for card in of(cards, "STEP"))
+
+
+def bound_together(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[Gathered, ...]:
+    """What *MPC binds by products of displacements."""
+    result: list[Gathered] = []
+    for card in of(cards, "MPC"):
+        with reasons.gathered():
+            result += gathered(card, mesh, is_finite(cards))
     return tuple(result)
 
 

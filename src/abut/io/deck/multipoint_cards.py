@@ -1,5 +1,5 @@
-"""*MPC of a deck as equations: equal displacements, and, where displacements are small, nodes that stay on a line or in a
-plane and the mean rotation of nodes."""
+"""*MPC of a deck: equal displacements as equations; nodes that stay on a line or in a plane and the mean rotation of nodes
+as equations where displacements are small, else as what is gathered; two nodes at a distance as that."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.io.deck.cards import Card, Line, key
+from abut.io.deck.gathered import Gathered
 from abut.io.deck.mesh_cards import MeshCards
 from abut.io.deck.record import Equation
 
@@ -17,30 +18,59 @@ Terms = dict[tuple[int, int], float]  # coefficient by node and direction 1..3
 APART = 1e-6  # of the extent of its nodes: how far one may lie off the line or plane that it is to stay on
 TINY = 1e-12  # a coefficient that is none
 EQUAL = ("TIE", "PIN")
-NONLINEAR = "which turns with the bodies, and is not supported with NLGEOM; use *COUPLING, or small displacements"
+BEAM = "BEAM"
 
 
 def multipoint(card: Card, mesh: MeshCards, finite: bool) -> list[Equation]:
-    """The equations of one *MPC. finite: NLGEOM. Raises InputError for kinds that abut does not have."""
+    """The equations of one *MPC. finite: NLGEOM, with which only equal displacements are any. Raises InputError for kinds
+    that abut does not have."""
     result: list[Equation] = []
     for kind, lines in _groups(card):
         head = lines[0]
         if kind in EQUAL:
             result += _equal(head, mesh)
             continue
-        if kind not in _KINDS:
+        if kind != BEAM and kind not in _KINDS:
             raise head.error(
-                f"type {kind or '(none)'} is not supported; TIE, PIN, STRAIGHT, PLANE and MEANROT are; or write *EQUATION"
+                f"type {kind or '(none)'} is not supported; TIE, PIN, BEAM, STRAIGHT, PLANE and MEANROT are; or write "
+                "*EQUATION"
             )
-        if finite:
-            raise head.error(f"{kind}: an equation between products of displacements, {NONLINEAR}")
-        nodes = [int(n) for k, line in enumerate(lines) for i in range(k == 0, len(line.fields)) if line.text(i)
-                 for n in mesh.existing(line, i, ordered=True)]  # fmt: skip
-        at = np.searchsorted(mesh.nodes, nodes)
-        for terms in _KINDS[kind](head, nodes, mesh.points[at]):
+        if finite or kind == BEAM:
+            continue
+        nodes, points = _members(lines, mesh)
+        for terms in _KINDS[kind](head, nodes, points):
             kept = tuple((n, d, c) for (n, d), c in terms.items() if abs(c) > TINY)
             result.append(Equation(kept, head.place))
     return result
+
+
+def gathered(card: Card, mesh: MeshCards, finite: bool) -> list[Gathered]:
+    """What one *MPC binds by products of displacements. finite: NLGEOM, without which only BEAM is read so. Raises
+    InputError for nodes that are not as the kind asks."""
+    result: list[Gathered] = []
+    for kind, lines in _groups(card):
+        if kind != BEAM and not (finite and kind in _KINDS):
+            continue
+        nodes, points = _members(lines, mesh)
+        if kind == BEAM:
+            if len(set(nodes)) != 2:
+                raise lines[0].error(f"BEAM: expected two nodes, got {len(nodes)}")
+            result.append(Gathered(kind, tuple(nodes), lines[0].place))
+            continue
+        tuple(_KINDS[kind](lines[0], nodes, points))  # which checks them
+        if kind == "MEANROT":
+            axis = tuple(float(x) for x in points[-1])
+            result.append(Gathered(kind, tuple(nodes[:-1:3]), lines[0].place, axis, nodes[-1]))
+        else:
+            result.append(Gathered(kind, tuple(dict.fromkeys(nodes)), lines[0].place))
+    return result
+
+
+def _members(lines: Sequence[Line], mesh: MeshCards) -> tuple[list[int], Vector]:
+    """Nodes of a group of lines, and where they are."""
+    nodes = [int(n) for k, line in enumerate(lines) for i in range(k == 0, len(line.fields)) if line.text(i)
+             for n in mesh.existing(line, i, ordered=True)]  # fmt: skip
+    return nodes, mesh.points[np.searchsorted(mesh.nodes, nodes)]
 
 
 def _groups(card: Card) -> Iterator[tuple[str, list[Line]]]:
@@ -150,12 +180,14 @@ _KINDS: dict[str, Callable[[Line, list[int], Vector], Iterator[Terms]]] = {
 }
 
 
-def multipoint_notes(cards: Sequence[Card]) -> list[str]:
+def multipoint_notes(cards: Sequence[Card], finite: bool) -> list[str]:
     """Of equations that are not linear in other programs."""
+    if finite:
+        return []
     return [
         f"{line.place}: *MPC {key(line.text(0))}: linear in the displacements, however large; CalculiX iterates it"
         for card in cards
         if card.key == "MPC"
         for line in card.lines
-        if key(line.text(0)) in _KINDS
+        if key(line.text(0)) in _KINDS or key(line.text(0)) == BEAM
     ]

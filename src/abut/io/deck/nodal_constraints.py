@@ -59,7 +59,7 @@ class Bonds:
 def bonds(deck: Deck, groups: Groups, plane: str | None) -> Bonds:
     """Work everything out. Raises InputError for forces on nodes that nothing carries, and for what contradicts itself."""
     used = set(groups.used.tolist())
-    apart = deck.references
+    apart = deck.references.union(found.pilot for found in deck.gathered)
     _check_equations(deck)
     axes = 2 if plane else 3
     stays = passing(deck)

@@ -17,8 +17,10 @@ from abut.io.deck.interference_cards import Scene, with_interferences
 from abut.io.deck.mesh_cards import MeshCards, mesh_cards
 from abut.io.deck.mode_cards import without_modes
 from abut.io.deck.model_cards import (
+    bound_together,
     cyclic_symmetry,
     equations,
+    is_finite,
     materials,
     pretension_sections,
     rigid_bodies,
@@ -62,7 +64,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
     history, known = with_interferences(
         steps(groups, mesh, known, reasons), groups, Scene(mesh, pair_list, known), reasons
     )
-    notes += [*friction_notes(cards), *multipoint_notes(cards), *repeated_members(cards, mesh)]
+    notes += [*friction_notes(cards), *multipoint_notes(cards, is_finite(cards)), *repeated_members(cards, mesh)]
     deck = Deck(
         path=str(path),
         nodes=mesh.nodes,
@@ -75,6 +77,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
         pairs=pair_list,
         general=general,
         equations=equations(cards, mesh, reasons),
+        gathered=bound_together(cards, mesh, reasons),
         rigid=rigid_bodies(cards, mesh, reasons),
         transforms=transforms(cards, mesh, reasons),
         cyclic=cyclic_symmetry(cards, mesh, reasons),

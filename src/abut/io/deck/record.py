@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from abut.io.deck.absence import Absence
 from abut.io.deck.elements import ElementType
+from abut.io.deck.gathered import Gathered
 from abut.io.deck.mode_cards import Modes
 from abut.io.deck.output_cards import Request
 from abut.io.deck.reasons import Place
@@ -389,6 +390,7 @@ class Deck:
     absences: tuple[Absence, ...] = ()
     layers: Mapping[int, tuple[int, ...]] = field(default_factory=dict)
     hinges: Numbers = field(default_factory=lambda: np.empty((0, 2), np.int64))
+    gathered: tuple[Gathered, ...] = ()
 
     @property
     def references(self) -> frozenset[int]:

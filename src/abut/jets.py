@@ -66,3 +66,8 @@ def angle(across: Jet, along: Jet) -> Jet:
     of_square = 2.0 * (s * across.slope + c * along.slope)
     bend = numerator / square - np.outer(slope, of_square) / square
     return Jet(np.arctan2(s, c), slope, 0.5 * (bend + bend.T))
+
+
+def linear(jet: Jet, moved: Array) -> Jet:
+    """The linear part of a function about where its variables are zero, at ``moved`` (n,)."""
+    return Jet.linear(np.asarray(jet.value + jet.slope @ moved), jet.slope)

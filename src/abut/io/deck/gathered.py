@@ -1,0 +1,19 @@
+"""Nodes that a deck binds by products of displacements."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from abut.io.deck.reasons import Place
+
+
+@dataclass(frozen=True)
+class Gathered:
+    """kind: STRAIGHT, PLANE, MEANROT or BEAM of *MPC; nodes; axis and pilot: of MEANROT, the node whose direction 1 is the
+    turn, else 0."""
+
+    kind: str
+    nodes: tuple[int, ...]
+    place: Place
+    axis: tuple[float, ...] = ()
+    pilot: int = 0
