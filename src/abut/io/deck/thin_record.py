@@ -12,13 +12,15 @@ class Thin:
     """Nodes of solids that stand for a node of a shell: its displacement is their mean, its turn that of the line from the
     first to the last, ``along`` the unit vector from the former to the latter and ``apart`` their distance; of a knot, whose
     turn is that of a coupling, None. inner: the nodes between them, which go with those where they are held, and the share
-    of the last in where they are. weights: of the nodes in the mean, which add up to 1; all alike where left out."""
+    of the last in where they are. weights: of the nodes in the mean, which add up to 1; all alike where left out.
+    stretch: by which their mean displacement is multiplied along the global axes."""
 
     nodes: tuple[int, ...]
     along: tuple[float, float, float] | None = None
     apart: float = 0.0
     inner: tuple[tuple[int, float], ...] = ()
     weights: tuple[float, ...] = ()
+    stretch: tuple[float, float, float] = (1.0, 1.0, 1.0)
 
     @property
     def middle(self) -> int:
