@@ -53,7 +53,6 @@ REASONS = (
     (r"CYCLIC", "sides of a sector that are meshed unlike", "mesh both sides alike"),
     (r"REFINE", "refinement of the mesh", "refine it in the preprocessor"),
     (r"\*MPC", "nonlinear `*MPC`", "`*EQUATION`, `*COUPLING`, or small displacements"),
-    (r"two of them together", "plane stress and axisymmetry in one deck", "one of the two"),
     (r"TRANSFORM", "axes of cylindrical coordinates on their axis", "leave the nodes on the axis out"),
     (
         r"INITIAL CONDITIONS|RESTART|SUBMODEL",
@@ -69,7 +68,6 @@ REASONS = (
     (r"stand inside a step", "cards of a step outside of one", "`*STEP` before them"),
     (r"no \*ELEMENT cards|every body is rigid", "nothing that deforms", "add a body that does"),
     (r"no procedure", "no step that solves", "add `*STATIC`"),
-    (r"different thickness", "plane elements of several thicknesses", "a deck for each, or solids"),
 )
 
 

@@ -175,12 +175,6 @@ def test_forces_are_shared_by_the_thickness(tmp_path):
     assert any("times 2 gives the deck's" in note for note in load(tmp_path, text).notes)
 
 
-def test_mixed_planes_are_refused(tmp_path):
-    text = PLANE.replace("*MATERIAL", "*NODE\n5, 3, 0.\n*ELEMENT, TYPE=CPS3, ELSET=E\n2, 2,5,3\n*MATERIAL")
-    with pytest.raises(InputError, match="CAX4 and CPS3 in one deck"):
-        load(tmp_path, text)
-
-
 def test_axes_of_a_support(tmp_path):
     """The bricks slide along a wall at 45 degrees: direction 1 of the rotated axes is held, y' is free."""
     turned = "*TRANSFORM, NSET=TOP, TYPE=R\n1., 0., 1., 0., 1., 0.\n"

@@ -1,4 +1,4 @@
-"""Shells, membranes, beams and trusses of a deck as solids."""
+"""Shells, membranes, beams and trusses of a deck as solids, and plane elements beside others."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 from abut.decks.beams import with_thick_beams
 from abut.decks.in_plane import with_planes_held
 from abut.decks.membranes import with_thick_membranes
+from abut.decks.plane_solids import with_solid_planes
 from abut.decks.shell_edges import quadratic
 from abut.decks.thin import with_thick_shells
 from abut.decks.trusses import with_thick_trusses
@@ -21,7 +22,7 @@ def expanded(deck: Deck, finite: bool) -> Deck:
 
     Raises InputError for what has no section or no size, and for what cannot be said of solids."""
     made, middles, ends = quadratic(with_planes_held(deck))
-    return thickened(made, middles, ends, finite, rigid=True)
+    return with_solid_planes(thickened(made, middles, ends, finite, rigid=True))
 
 
 def thickened(deck: Deck, middles: Numbers, ends: Numbers, finite: bool, rigid: bool) -> Deck:

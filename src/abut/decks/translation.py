@@ -28,6 +28,7 @@ from abut.decks.output import output_options, tables, with_tables
 from abut.decks.overclosure import overclosure_notes, own_laws, softened
 from abut.decks.passing import passing_notes, removals
 from abut.decks.plane import plane_of, thickness
+from abut.decks.plane_solids import plane_notes
 from abut.decks.rigid import join, rigid_bodies, with_parts_coupled
 from abut.decks.rubber import of_rubber, rubber_notes
 from abut.decks.springs import spring_notes, springs
@@ -162,6 +163,7 @@ def _made_solid(deck: Deck, soft: bool) -> tuple[Deck, list[str]]:
     """A deck with solids in place of shells and beams, cut where bolts are tightened, and what there is to tell of it."""
     notes = [f"{block.code}: {block.type.instead}" for block in deck.blocks if block.type.instead]
     notes += [*element_notes(deck), *loading_notes(deck)]
+    notes += plane_notes(deck)
     deck = cut(expanded(deck, is_finite(deck)))
     notes = [*deck.notes, *notes, *overclosure_notes(deck, soft), *finite_notes(deck), *spring_notes(deck)]
     return deck, [*notes, *passing_notes(deck), *rubber_notes(deck)]

@@ -76,6 +76,10 @@ def _of_nodes(deck: Deck, surface: Faces, nodes: Numbers, free: FreeFaces) -> Ro
         slots = np.arange(free.nodes.shape[1])[None, :]
         hit = (inside | (slots >= free.corners[:, None])).all(axis=1)
     left = np.setdiff1d(nodes, free.nodes[hit])
+    if len(left):  # faces that a set ends within: most of their nodes are in it
+        most = 2 * (inside & (free.nodes >= 0)).sum(axis=1) > (free.nodes >= 0).sum(axis=1)
+        hit |= most & np.isin(free.nodes, left).any(axis=1)
+        left = np.setdiff1d(nodes, free.nodes[hit])
     if len(left):
         raise DeckError(
             surface.place,

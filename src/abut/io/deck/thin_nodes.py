@@ -107,7 +107,7 @@ def turns(
 def _shares(thin: Thin, direction: Vector) -> dict[Point, float]:
     """A vector in parts at each node."""
     return {
-        (node, int(k)): float(direction[k]) * share
+        (node, int(k)): float(direction[k]) * share * thin.stretch[k]
         for node, share in thin.shares
         for k in np.flatnonzero(np.abs(direction) > SMALL)
     }

@@ -13,7 +13,8 @@ class Thin:
     the line from the first to the last, ``along`` the unit vector from the former to the latter and ``apart`` their
     distance; of a knot, whose turn is that of a coupling, None. inner: the nodes between them, which stay on that line where
     they are held, but for their motion along it where the thickness is not ``rigid``, and the share of the last in where
-    they are. weights: of the nodes in the mean, which add up to 1; all alike where left out."""
+    they are. weights: of the nodes in the mean, which add up to 1; all alike where left out. stretch: by which their mean
+    displacement is multiplied along the global axes."""
 
     nodes: tuple[int, ...]
     along: tuple[float, float, float] | None = None
@@ -21,6 +22,7 @@ class Thin:
     inner: tuple[tuple[int, float], ...] = ()
     weights: tuple[float, ...] = ()
     rigid: bool = True
+    stretch: tuple[float, float, float] = (1.0, 1.0, 1.0)
 
     @property
     def own(self) -> tuple[int, ...]:

@@ -85,7 +85,7 @@ def expand(points: Vector, shells: Sequence[Shell]) -> Expanded:
     sizes = np.cumsum([shell.cells.size for shell in shells])[:-1]
     own = [d.reshape(s.cells.shape) for s, d in zip(shells, np.split(director, sizes))]
     cells = tuple(
-        (SOLID[s.kind], np.stack([_solid(start[rows] + 2 * k, s.kind in LINEAR) for k in range(len(s.layers) - 1)]))
+        (SOLID[s.kind], np.stack([stacked(start[rows] + 2 * k, s.kind in LINEAR) for k in range(len(s.layers) - 1)]))
         for s, rows in zip(shells, own)
     )
     return Expanded(at, column, share, stands, mean, thick, cells, _means(own, start, column, share))
@@ -207,9 +207,9 @@ def _directors(node: Numbers, normal: Vector, given: NDArray[np.bool_], own: Vec
     return result, np.array(firsts, np.int64)
 
 
-def _solid(bottom: Numbers, linear: bool) -> Numbers:
-    """Rows of the expanded points of the solid cells of a layer; bottom: (n, k) of the points below at the nodes of the
-    shell's cells."""
+def stacked(bottom: Numbers, linear: bool) -> Numbers:
+    """Rows of the expanded points of the solid cells of a layer, of which each node has one below, one halfway and one
+    above. bottom: (n, k) of those below at the nodes of cells."""
     top = bottom + 2
     if linear:
         return np.concatenate([bottom, top], axis=1)
