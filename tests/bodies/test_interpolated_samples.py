@@ -148,6 +148,27 @@ def test_free_expansion() -> None:
     assert np.abs(after).max() < 1e-12 * np.abs(before).max()
 
 
+@pytest.mark.parametrize("kind", ["tri3", "tet4"])
+def test_of_some_cells(kind: str) -> None:
+    """The same there as of all, the others as they are."""
+    mesh = rectangle((0, 2), (0, 1), (6, 4), kind) if kind == "tri3" else box((0, 2), (0, 1), (0, 1), (3, 3, 3), kind)
+    solids, exact, nothing = (
+        Solids(mesh, dict.fromkeys(mesh.bodies, ISOTROPIC), "strain"),
+        Cubic(mesh.dim),
+        TemperatureChange(),
+    )
+    stress = point_stress(solids, np.ascontiguousarray(exact.displacement(mesh.points)))
+    known = no_equations(solids.patches, mesh.dim)
+    fits = fitted(Sampling.of(solids, mesh.points, known), stress, known)
+    some = np.random.default_rng(3).random(mesh.n_cells) < 0.2
+    (own,), (whole,), (part,) = stress, without_interpolation(fits, nothing), without_interpolation(fits, nothing, some)
+    assert np.abs(part - whole)[some].max() < 1e-12 * np.abs(own).max()
+    assert (part == own)[~some].all()
+    assert (np.abs(whole - own).max(axis=(1, 2)) > 0.0).all()
+    (none,) = without_interpolation(fits, nothing, np.zeros(mesh.n_cells, dtype=bool))
+    assert (none == own).all()
+
+
 def test_other_laws_and_cells_stay() -> None:
     """Of cells of second order, of mean dilatation, and of a law that is not linear, samples are left as they are."""
     rubber = abut.NeoHooke(young=3.0, poisson=0.3)

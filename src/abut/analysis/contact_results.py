@@ -22,6 +22,7 @@ from abut.analysis.statistics import (
     pressure_statistics,
     resultant,
 )
+from abut.contact.even_axis import even_at_axis
 from abut.contact.friction_bound import FrictionBound
 from abut.contact.geometry import full_moments, nodal_normals, side_normals, split_at_creases
 from abut.contact.nodal_recovery import (
@@ -291,7 +292,7 @@ def _recovered(state: PairState, at: Averages) -> Recovery:
     """The pressure at points and at the facets' nodes: from averages of facet-wise coefficients, theory (P10), values at
     points, theory (P18); of cells of first order averages, sharpened where ordinary continuous functions are in contact all
     over, theory (P12), else with those on planes of symmetry mended, theory (P14); but for facets that are ``exact``."""
-    pair, average = state.pair, at.of(state.normal if state.mended is None else state.mended)
+    pair, average = state.pair, even_at_axis(at, at.of(state.normal if state.mended is None else state.mended))
     plain, smooth = average, pair.tied or bool(state.closed.all() and pair.space.continuous and pair.space.ordinary)
     if smooth and not at.exact.all():
         sharp = at.sharpened(average, at.surface.points, _places(pair, at.surface, True).along)

@@ -10,9 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.analysis.known_stress import mirrored
+from abut.bodies.interpolated_samples import without_interpolation
 from abut.bodies.interpolation import interpolation_forces
 from abut.bodies.patch_fits import Fits, Sampling, fitted
 from abut.bodies.recovery import in_cells
+from abut.bodies.solids import TemperatureChange
 from abut.bodies.stress import PointStress
 from abut.contact.pressure_space import DUAL, DUAL_P1
 from abut.nonlinear.again import Imposed
@@ -42,6 +44,11 @@ class Mended:
     stress: PointStress
     pressure: tuple[NDArray[np.float64] | None, ...]
     fits: Fits
+
+    def near(self, cells: NDArray[np.bool_], temperature: TemperatureChange) -> PointStress:
+        """The stress of displacements that ``cells`` (n_cells,) do not interpolate, by the fits; of others ``stress``."""
+        mended = without_interpolation(self.fits, temperature, cells)
+        return tuple(own + (new - old) for own, new, old in zip(self.stress, mended, self.fits.stress))
 
 
 def is_mended(problem: ContactProblem) -> bool:

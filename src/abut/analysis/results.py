@@ -26,7 +26,7 @@ from abut.analysis.preloads import preload_results
 from abut.analysis.reactions import reactions
 from abut.analysis.response import beyond_rounding, grows
 from abut.analysis.stress_error import stress_error
-from abut.analysis.surface_stress import loaded_points, normal_stress
+from abut.analysis.surface_stress import cells_around, loaded_points, normal_stress
 from abut.analysis.thin_give import bends
 from abut.analysis.volume_change import volume_change
 from abut.bodies.averages import averages
@@ -113,8 +113,9 @@ def step_result(
     moved = end.nodal if shown is None else shown.displacement
     points = model.mesh.points if model.small_strains else model.mesh.points + end.nodal
     points, solids = np.ascontiguousarray(points), model.deformable
-    contacts = _contacts(end, attempt, before, averages(solids, shown.stress if shown else own), shown)
     change = heated(model, assembled.loaded, end.motion)
+    near = own if shown is None else shown.near(cells_around(model.mesh, [p.contactor for p in balance.pairs]), change)
+    contacts = _contacts(end, attempt, before, averages(solids, near), shown)
     known = known_stress(model, points, moved, state.time, change, list(zip(balance.pairs, contacts)))
     values = recovered(solids, points, own, known, None if shown is None else shown.fits, change)
     stress = at_points(solids.patches, values, len(points))

@@ -28,6 +28,19 @@ def loaded_points(model: Model) -> NDArray[np.int64]:
     return np.unique(np.concatenate([np.empty(0, np.int64), *(model.mesh.nodes_of(name) for name in on)]))
 
 
+def cells_around(mesh: Mesh, surfaces: Sequence[Surface]) -> NDArray[np.bool_]:
+    """The cells (n_cells,) from which ``normal_stress`` takes averages: those at the surfaces, and those around these."""
+    found, points = np.zeros(mesh.n_cells, dtype=bool), np.zeros(len(mesh.points), dtype=bool)
+    for surface in surfaces:
+        points[surface.node_ids] = True
+    for _ in range(2):
+        for block, start, end in zip(mesh.blocks, mesh.starts, mesh.starts[1:]):
+            found[start:end] = points[block.nodes].any(axis=1)
+        for block, start, end in zip(mesh.blocks, mesh.starts, mesh.starts[1:]):
+            points[block.nodes[found[start:end]]] = True
+    return found
+
+
 def normal_stress(
     mesh: Mesh, contactor: Surface, stress: Array, loaded: Sequence[int] | NDArray[np.int64] = ()
 ) -> Array:

@@ -35,16 +35,19 @@ def straight(solids: Solids) -> NDArray[np.bool_]:
     return result
 
 
-def without_interpolation(fits: Fits, temperature: TemperatureChange) -> PointStress:
+def without_interpolation(
+    fits: Fits, temperature: TemperatureChange, some: NDArray[np.bool_] | None = None
+) -> PointStress:  # fmt: skip
     """The stresses ``fits.stress`` less C (e(I u) - e(u)) in the middle of each of the ``straight`` cells, with I u the
-    interpolate between the nodes of a displacement u whose strains bend as the polynomials do; other cells as they are."""
+    interpolate between the nodes of a displacement u whose strains bend as the polynomials do; other cells as they are.
+    some: (n_cells,) only these, all where left out."""
     solids = fits.sampling.solids
     chosen, of = straight(solids), solids.patches
+    chosen = chosen if some is None else chosen & some
     origin = fits.sampling.centre.mean(axis=0)
-    slope, second = _derivatives(fits, origin)
+    patch, asked = _around(solids, chosen)
+    slope, second = _derivatives(fits, origin, asked)
     bends = np.any(second != 0.0, axis=(1, 2)).astype(float)
-    patch = np.full(len(of.point), -1, dtype=np.int64)
-    patch[of.corner] = np.arange(len(of.corner))
     compliance, which = compliances(solids)
     stiffness = stiffnesses(compliance, solids.plane, solids.mesh.dim)
     result = []
@@ -88,10 +91,24 @@ def _in_middles(
     return steep, curve / np.where(told > 0.0, told, 1.0)[:, None, None]
 
 
-def _derivatives(fits: Fits, origin: Array) -> tuple[Array, Array]:
-    """Of all polynomials: slopes at ``origin`` (n_patches, dim, C), and second derivatives (n_patches, pairs, C)."""
-    dim, coefficients = len(origin), fits.coefficients
-    own = np.linalg.inv(np.tril(fits.metrics))
+def _around(solids: Solids, chosen: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """The patches (n,) around the corners of chosen cells (n_cells,), and of each value of the bodies' points which of
+    these it is, -1 for none."""
+    of, needed = solids.patches, np.zeros(len(solids.patches.point), dtype=bool)
+    for group in solids.groups():
+        cells = group.cells[chosen[group.cells]]
+        if len(cells):
+            needed[of.of_cells(cells, solids.mesh.starts)] = True
+    asked = np.flatnonzero(needed[of.corner])
+    patch = np.full(len(of.point), -1, dtype=np.int64)
+    patch[of.corner[asked]] = np.arange(len(asked))
+    return patch, asked
+
+
+def _derivatives(fits: Fits, origin: Array, asked: NDArray[np.int64]) -> tuple[Array, Array]:
+    """Of n polynomials that are asked for: slopes at ``origin`` (n, dim, C), and second derivatives (n, pairs, C)."""
+    dim, coefficients = len(origin), fits.coefficients[asked]
+    own = np.linalg.inv(np.tril(fits.metrics[asked]))
     slope = np.swapaxes(own, 1, 2) @ coefficients[:, 1 : 1 + dim]
     share = np.zeros((len(own), len(PAIRS[dim]), len(PAIRS[dim])))
     for row, (a, b) in enumerate(PAIRS[dim]):
@@ -99,7 +116,7 @@ def _derivatives(fits: Fits, origin: Array) -> tuple[Array, Array]:
             if c >= a and d >= b:  # of a lower triangle; d >= c and b >= a
                 share[:, row, term] = own[:, c, a] * own[:, d, b] + own[:, c, b] * own[:, d, a]
     second = share @ coefficients[:, 1 + dim :]
-    away = origin - fits.sampling.centre
+    away = origin - fits.sampling.centre[asked]
     for row, (a, b) in enumerate(PAIRS[dim]):
         slope[:, a] += second[:, row] * away[:, b, None]
         if a != b:
