@@ -352,7 +352,8 @@ class Deck:
     outside the steps; initial: node -> temperature; quiet, ignored: see ``supported.Sifted``; small_sliding: a
     contact pair asks for it; thicknesses: of shells at nodes; normals: of shells at (element, node); thin: what stands for
     the nodes of shells once they are expanded; modes: what the last step asks for beside;
-    absences: of elements that go on the way, or come; layers: of shells of several the solids, from the negative side."""
+    absences: of elements that go on the way, or come; layers: of shells of several the solids, from the negative side;
+    stresses: of elements before the first step, one or those at integration points."""
 
     path: str
     nodes: Numbers
@@ -386,6 +387,7 @@ class Deck:
     modes: Modes | None = None
     absences: tuple[Absence, ...] = ()
     layers: Mapping[int, tuple[int, ...]] = field(default_factory=dict)
+    stresses: Mapping[int, tuple[tuple[float, ...], ...]] = field(default_factory=dict)
 
     @property
     def references(self) -> frozenset[int]:
