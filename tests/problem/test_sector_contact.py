@@ -101,6 +101,20 @@ def test_partly_open_contact(friction: float) -> None:
     assert both.apart(lambda c: c.pressure) < ROUNDING
 
 
+def test_points_that_close_on_the_way() -> None:
+    """Slip of open contact does not count, by the direction in which bodies approach: the mean of a contact that lies across
+    the side, whose normals are in one frame."""
+    mesh = sector("hex8", (2, 6, 2))
+    supports = [
+        abut.Support("in.left", x=pushed, y=0, z=0, axes=ROUND),
+        abut.Support("out.right", x=0, y=0.001, z=0, axes=ROUND),
+    ]
+    contact = replace(FIT, offset=0.0, friction=0.3)
+    both = solved(mesh, supports, contact, solve=abut.SolveOptions(steps=3))
+    for field in (lambda c: c.pressure, lambda c: c.friction.traction, lambda c: c.friction.slip):
+        assert both.apart(field) < ROUNDING
+
+
 def test_bodies_as_sides() -> None:
     """Their edges are creases, of which each smooth side goes on by itself."""
     both = solved(sector("hex8", (2, 3, 2)), held(3), abut.Contact("in", "out", offset=-0.002))
