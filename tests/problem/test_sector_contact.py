@@ -163,6 +163,16 @@ def test_sides_are_found_in_equations() -> None:
     assert {*zip(again.nodes, again.partners)} == {*zip(found.nodes, found.partners)} or again.turn == pytest.approx(
         found.turn.T
     )
+    brick = sector("hex8", (1, 2, 1))
+    (flat,) = turned_sides(  # without equations along the axis, along which supports hold both sides
+        brick,
+        [
+            e
+            for e in abut.add_sectors(brick, [abut.Sector("in.back", "in.front", COUNT)]).equations
+            if e.terms[0].component != "z"
+        ],
+    )
+    assert flat.sectors == COUNT
     assert turned_sides(moved, added.equations[:2]) == ()  # one node lies so for some axis
     ties = [abut.Equation((abut.Term(a, c, 1.0), abut.Term(a + 1, c, -1.0))) for a in (0, 4) for c in "xy"]
     assert turned_sides(moved, ties) == ()
