@@ -1,4 +1,4 @@
-"""Averages at the axis of bodies of revolution, theory (P27)."""
+"""Averages at the axis of bodies of revolution, theory (P28)."""
 
 from __future__ import annotations
 

@@ -156,7 +156,7 @@ def test_on_the_axis(cell: str, first: int, contactor: str) -> None:
         x, p = at_corners(solution.contacts[0])
         axis = np.argsort(x[:, 0])[:3]
         off = np.abs(p - ellipse(BALLS, BALLS_PEAK, 2)(x))[axis].max() / BALLS_PEAK
-        assert off <= (0.4 * limit if cell == "tri3" else limit)  # tri3: second order but on the axis, (P27)
+        assert off <= (0.4 * limit if cell == "tri3" else limit)  # tri3: second order but on the axis, (P28)
         assert errors(solution, BALLS, BALLS_PEAK)[0] <= limit
     assert errors(solution, BALLS, BALLS_PEAK)[0] <= (0.3 if contactor == "lower" else 0.4) * limit
 

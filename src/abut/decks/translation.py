@@ -20,6 +20,7 @@ from abut.decks.expanded import expanded
 from abut.decks.friction import friction_options, path_notes
 from abut.decks.gathered import connectors
 from abut.decks.holds import holds
+from abut.decks.initial_stress import stress_before
 from abut.decks.large import finite_notes, is_finite, load_steps, plastic_steps, unsupported, yields
 from abut.decks.metal import metal_law
 from abut.decks.modes import loading_notes, modes, with_stiff_beams
@@ -277,7 +278,7 @@ def _solid(deck: Deck, name: str, piece: Piece, plane: str | None) -> Solid:
             law = elastic_law(deck, piece, 3 if plane is None else 2)
     except InputError as error:
         raise DeckError(material.place, f"*MATERIAL '{material.name}': {error}") from None
-    return Solid(name, law, integration=piece.integration)
+    return Solid(name, law, integration=piece.integration, initial_stress=stress_before(deck, piece, plane))
 
 
 def _contact(deck: Deck, groups: Groups, pair: Pair, hard: Numbers, notes: list[str]) -> Contact:

@@ -171,7 +171,7 @@ def _prescribed(model: Model) -> float | None:
     """Largest prescribed displacement; None where something else may move the bodies too."""
     values = [getattr(support, name) for support in model.supports for name in ("x", "y", "z", "normal")]
     others: object = model.loads or model.referenced or model.equations
-    others = others or any(solid.temperature for solid in model.solids)
+    others = others or any(solid.temperature or solid.initial_stress for solid in model.solids)
     if others or any(map(callable, values)) or any(support.amplitude for support in model.supports):
         return None
     return max((abs(float(v)) for v in values if v is not None), default=0.0)

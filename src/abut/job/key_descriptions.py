@@ -189,6 +189,8 @@ MEANINGS: dict[str, dict[str, str]] = {
         "body": "name of the body in the mesh",
         "material": "name of the material",
         "temperature": "uniform change of temperature that strains the body [temperature]",
+        "initial_stress": "stress that the undeformed body has, xx yy zz xy (3D: xx yy zz xy yz zx), numbers or expressions "
+        "of position; axisymmetric: radial, axial, hoop, shear [force per area]",
         "integration": "how elements integrate their stiffness: full, reduced, b-bar or mixed; the last two do not lock "
         "near Poisson's ratio 0.5 (b-bar: F-bar with kinematics finite; mixed: pressures of each cell's own, tet10: shared "
         "at corners); auto: full, but where cells would lock b-bar (quad4, hex8), mixed, or in plastic bodies reduced "

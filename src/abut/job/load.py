@@ -172,7 +172,8 @@ def _model(file: JobFile, folder: Path, refine: int, named: Named) -> tuple[Mode
         if s.material not in materials:
             raise InputError(f"solids[{i}].material: no material named {s.material!r}{nearest(s.material, materials)}")
         how = thin.integration(s.body, s.integration)
-        solids.append(Solid(s.body, materials[s.material], s.temperature, how))
+        given = with_fields(values(s, f"solids[{i}]", ("body", "material", "integration")), named, f"solids[{i}]")
+        solids.append(Solid(s.body, materials[s.material], integration=how, **given))
     resolved = resolve_contacts(file.contacts, thin.thick.mesh, solids, file.model.kinematics == "finite")
     stops = [Stop(**values(s, f"stops[{i}]")) for i, s in enumerate(file.stops)]
     stopped = add_stops(resolved.mesh, stops, file.model.plane)

@@ -14,7 +14,7 @@ from abut.job.run_tables import ResultFieldTable
 from abut.probing.result_field import ResultField, result_field
 from abut.types import Json
 
-MAY_HAVE = ("x", "y", "z", "value")  # keys of supports and loads that hold expressions
+MAY_HAVE = ("x", "y", "z", "value", "initial_stress")  # keys of supports, loads and solids that hold expressions
 
 Named = tuple[tuple[str, ResultField], ...]
 

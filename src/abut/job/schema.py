@@ -74,6 +74,7 @@ class SolidTable(Table):
     material: str
     temperature: Number = 0.0
     integration: Annotated[str, OneOf(INTEGRATIONS)] = INTEGRATIONS[0]
+    initial_stress: list[Varying] | None = None
 
 
 class SupportTable(Table):

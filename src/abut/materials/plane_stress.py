@@ -12,7 +12,7 @@ from abut.materials.material import Array, Evaluated
 
 OUT = np.array([2, 4, 5])  # zz yz zx
 LIMIT = 25  # iterations; Newton's method needs one for a linear material and about five for others
-STRESS_LEFT = 1e-13  # stress left out of the plane, relative to tangent times strain
+STRESS_LEFT = 1e-13  # stress left out of the plane, relative to tangent times strain and to stress
 
 Evaluate = Callable[[Array, Array], Evaluated]
 Strained = tuple[Array, Evaluated]  # strains (n, 6) that a material has seen, and what it said
@@ -36,6 +36,7 @@ def in_plane_stress(evaluate: Evaluate, strain: Array, history: Array) -> Strain
         stress, tangent, after = evaluate(strain, history)
         block = tangent[:, OUT[:, None], OUT]
         scale = np.abs(tangent).max(axis=(1, 2), initial=0.0) * np.abs(strain).max(axis=1, initial=0.0)
+        scale += np.abs(stress).max(axis=1, initial=0.0)  # of bodies that have stresses before strains
         if (np.abs(stress[:, OUT]) <= STRESS_LEFT * scale[:, None]).all():
             return strain, _condensed(stress, tangent, block, after)
         strain[:, OUT] -= np.linalg.solve(block, stress[:, OUT, None])[..., 0]

@@ -22,13 +22,13 @@ class Integrations:
 
     def of(self, solid: Solid) -> str:
         """Of one of the solids."""
-        return resolved(solid.integration, self.kinds(solid.body), self.plane, solid.material, self.finite)
+        return resolved(solid.integration, self.kinds(solid.body), self.plane, solid.law, self.finite)
 
     def check(self, solid: Solid, where: str) -> None:
         """Raises InputError, beginning with ``where``, for cells and materials that it is not for."""
         kinds = self.kinds(solid.body)
         check_integration(solid.integration, kinds, self.plane, where)
-        check_resolved(self.of(solid), kinds, solid.material, self.plane, self.finite, where)
+        check_resolved(self.of(solid), kinds, solid.law, self.plane, self.finite, where)
 
     @property
     def by_body(self) -> dict[str, str]:

@@ -197,7 +197,7 @@ class Model:
     @property
     def materials(self) -> dict[str, Material]:
         """Of each body that deforms."""
-        return {solid.body: solid.material for solid in self.solids}
+        return {solid.body: solid.law for solid in self.solids}
 
     @cached_property
     def deformable(self) -> Solids:
@@ -357,7 +357,7 @@ class Model:
             if solid.body in seen:
                 raise InputError(f"solids[{i}].body: body '{solid.body}' has two materials; keep one of them")
             seen.add(solid.body)
-            check_model(solid.material, self.dim, self.plane, f"solids[{i}].material")
+            check_model(solid.law, self.dim, self.plane, f"solids[{i}].material")
             self.integrations.check(solid, f"solids[{i}].integration")
         for i, rigid in enumerate(self.rigid):
             if rigid.body in seen:

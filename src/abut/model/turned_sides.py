@@ -83,9 +83,12 @@ def _between_two(mesh: MeshRecord, equations: Sequence[Equation]) -> dict[tuple[
 
 def _turn(rows: Sequence[Array], dim: int) -> Array | None:
     """The turn (dim, dim) from the second point's displacement to the first's; None where the equations are none of one."""
-    if len(rows) != dim:
+    if not rows or len(rows) not in (dim, 2):
         return None
     own, other = np.stack(rows, axis=1)
+    if len(rows) < dim:  # supports hold both points along the axis
+        axis = np.cross(*own)[None]
+        own, other = np.concatenate([own, axis]), np.concatenate([other, -axis])
     if abs(np.linalg.det(own)) < SAME * np.abs(own).max() ** dim:
         return None
     turn = -np.linalg.solve(own, other)

@@ -9,6 +9,7 @@ from scipy.sparse.csgraph import connected_components
 
 from abut.contact.pressure_space import PressureSpace
 from abut.problem.pair import Pair
+from abut.problem.turned_places import TurnedPlaces
 
 STEEP = 0.5  # cosine between a normal and the direction of approach: beyond 60 degrees as at 60
 NO_WAY = 1e-6  # of a mean of unit vectors that cancel each other, or are all held
@@ -39,17 +40,24 @@ def _ways(pair: Pair, open_by: Array, pressure: Array, closed: NDArray[np.bool_]
     surface is closest, weighted by the pressure where it is in contact; zero where supports leave none."""
     assert pair.slip is not None
     near = _neighbours(pair.space)
-    place = _closest(near, np.where(closed, -1.0, open_by))
+    height = np.where(closed, -1.0, open_by)
+    down = _next(near, height)
+    place = _last(down)
     weight = pair.weight[pair.normal]
     carries = np.bincount(place, pressure * closed, minlength=len(place)) > 0.0
     share = np.where(carries[place], pressure, 1.0) * closed * weight
     roots = np.flatnonzero((place == np.arange(len(place))) & ~closed)
     share = share + _beside(near, open_by, roots, weight)
     constraints = np.where((pair.index[:, 1:] < 0)[..., None], pair.slip.tangents, 0.0)
+    normals, turned = pair.slip.normals, TurnedPlaces.of(pair, down, height < 0.0)
+    if turned is not None:
+        normals, constraints = turned.here(normals), turned.here(constraints)
     dim = pair.contactor.dim
     total, stuck = np.zeros((len(place), dim)), np.zeros((len(place), dim, dim))
-    np.add.at(total, place, share[:, None] * pair.slip.normals)
+    np.add.at(total, place, share[:, None] * normals)
     np.add.at(stuck, place, (share > 0.0)[:, None, None] * np.einsum("kbd,kbe->kde", constraints, constraints))
+    if turned is not None:
+        total[turned.closed] = total[turned.closed] @ turned.along
     size = np.bincount(place, share, minlength=len(place))
     for root in np.flatnonzero(np.abs(stuck).max(axis=(1, 2)) > 0.0):
         values, axes = np.linalg.eigh(stuck[root])
@@ -58,7 +66,7 @@ def _ways(pair: Pair, open_by: Array, pressure: Array, closed: NDArray[np.bool_]
     length = np.linalg.norm(total, axis=1)
     some = length > NO_WAY * size
     ways = np.where(some[:, None], total / np.where(some, length, 1.0)[:, None], 0.0)
-    return np.asarray(ways[place])
+    return np.asarray(ways[place]) if turned is None else turned.there(ways[place])
 
 
 def _neighbours(space: PressureSpace) -> sp.csr_matrix:
@@ -70,9 +78,9 @@ def _neighbours(space: PressureSpace) -> sp.csr_matrix:
     return (by_facet.T @ by_facet).tocsr()
 
 
-def _closest(near: sp.csr_matrix, height: Array) -> NDArray[np.int64]:
-    """For each function the one at the end of the steepest way down, (n,); of a connected part in contact, with negative
-    height, the first."""
+def _next(near: sp.csr_matrix, height: Array) -> NDArray[np.int64]:
+    """For each function the next one on the steepest way down, (n,), itself where that ends; of a connected part in contact,
+    with negative height, the first."""
     n = len(height)
     links = near.tocoo()
     both = (height[links.row] < 0.0) & (height[links.col] < 0.0)
@@ -85,7 +93,11 @@ def _closest(near: sp.csr_matrix, height: Array) -> NDArray[np.int64]:
     down = np.arange(n)
     rows, start = np.unique(row, return_index=True)
     down[rows] = col[start]
-    down = np.where(height < 0.0, first[label], down)
+    return np.where(height < 0.0, first[label], down)
+
+
+def _last(down: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Where the ways end, (n,)."""
     while True:
         further = down[down]
         if (further == down).all():

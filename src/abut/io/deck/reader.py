@@ -13,6 +13,7 @@ from abut.io.deck.cards import Card, read_cards
 from abut.io.deck.contact_cards import general_contact, pairs
 from abut.io.deck.coupling_cards import couplings
 from abut.io.deck.friction_cards import friction_notes, without_tied_friction
+from abut.io.deck.initial_conditions import initial_stress, initial_temperature
 from abut.io.deck.interference_cards import Scene, with_interferences
 from abut.io.deck.mesh_cards import MeshCards, mesh_cards
 from abut.io.deck.mode_cards import without_modes
@@ -36,7 +37,7 @@ from abut.io.deck.repeated import repeated_members, without_repeated
 from abut.io.deck.section_cards import sections
 from abut.io.deck.shell_cards import nodal_thickness, normals
 from abut.io.deck.spring_cards import springs
-from abut.io.deck.step_cards import KIND, amplitudes, initial_temperature, prescribed, split_steps, steps
+from abut.io.deck.step_cards import KIND, amplitudes, prescribed, split_steps, steps
 from abut.io.deck.supported import NEEDED, opens, sift
 
 ALONE = "shells and beams are read with the whole deck only; run the deck itself, or give job files a mesh of solids"
@@ -84,6 +85,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
         pretension=pretension_sections(cards, mesh, reasons),
         fixed=fixed,
         initial=initial_temperature(cards, mesh, reasons),
+        stresses=initial_stress(cards, mesh, reasons),
         amplitudes=known,
         steps=history,
         notes=tuple(notes),

@@ -355,7 +355,8 @@ class Deck:
     contact pair asks for it; thicknesses: of shells at nodes; normals: of shells at (element, node); thin: what stands for
     the nodes of shells once they are expanded; modes: what the last step asks for beside;
     absences: of elements that go on the way, or come; layers: of shells of several the solids, from the negative side;
-    hinges: (m, 2) nodes that hinges join within a body."""
+    hinges: (m, 2) nodes that hinges join within a body; stresses: of elements before the first step, one or those at
+    integration points."""
 
     path: str
     nodes: Numbers
@@ -391,6 +392,7 @@ class Deck:
     layers: Mapping[int, tuple[int, ...]] = field(default_factory=dict)
     hinges: Numbers = field(default_factory=lambda: np.empty((0, 2), np.int64))
     gathered: tuple[Gathered, ...] = ()
+    stresses: Mapping[int, tuple[tuple[float, ...], ...]] = field(default_factory=dict)
 
     @property
     def references(self) -> frozenset[int]:

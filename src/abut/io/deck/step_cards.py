@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
@@ -278,19 +278,3 @@ _LINES: Mapping[str, Callable[[Line, str, MeshCards], list[Prescribed]]] = {
     "DSLOAD": _on_surface,
     "TEMPERATURE": _temperature,
 }
-
-
-def initial_temperature(cards: Iterable[Card], mesh: MeshCards, reasons: Reasons) -> dict[int, float]:
-    """Temperature of nodes before the first step."""
-    result: dict[int, float] = {}
-    for card in cards:
-        if card.key != "INITIALCONDITIONS":
-            continue
-        with reasons.gathered(defines=True):
-            kind = key(card.need("TYPE"))
-            if kind != "TEMPERATURE":
-                raise card.error(f"TYPE={kind} is not supported; only the temperature is read")
-            for line in card.lines:
-                value = line.number(1, "temperature")
-                result |= dict.fromkeys(mesh.node_sets.resolve(line, 0, "node").tolist(), value)
-    return result
