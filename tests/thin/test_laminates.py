@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import abut
+from abut.diagnosis.cures import cures
 from abut.errors import InputError
 from abut.job.load import load_job
 from models.thin import CLAMPED, LENGTH, THICK, WIDTH, E, strip
@@ -39,6 +40,42 @@ def test_sandwich_under_pressure(side: str, tmp_path: Path) -> None:
     )  # fmt: skip
     exact = 1e-4 * WIDTH * LENGTH**4 / (8.0 * STIFFNESS)
     assert tip(abut.solve(model)) == pytest.approx(-exact if side == "spos" else exact, rel=0.007)
+
+
+def test_section_forces(tmp_path: Path) -> None:
+    """A sandwich under a couple M at its end, per width: each layer has E z M / D at its height z, so E h z M / D and
+    E h^3 M / 12 D about its own middle; all of them together have M and no force."""
+    couple = 0.1
+    load = [abut.MidForce("right", (0.0, 0.0, 0.0), (0.0, couple * WIDTH / 5, 0.0))]  # five nodes
+    thick = abut.thicken(
+        strip(tmp_path / "a.msh"),
+        {"strip": abut.Shell(THICK, layers=LAYERS)},
+        [abut.MidSupport("left", **CLAMPED)],
+        load,
+    )
+    youngs, sizes, heights = (E, SOFT * E, E), (0.25, 0.5, 0.25), (-0.375, 0.0, 0.375)
+    solids = [
+        abut.Solid(body, abut.LinearElastic(young, 0.0), integration="reduced")
+        for body, young in zip(thick.mesh.shells, youngs)
+    ]
+    solution = abut.solve(abut.Model(thick.mesh, solids, thick.supports, thick.loads, equations=thick.equations))
+    bent = couple / (STIFFNESS / WIDTH)
+    for body, young, h, z in zip(thick.mesh.shells, youngs, sizes, heights):
+        of = abut.mid_surface(solution, body)
+        inside = np.abs(of.points[:, 0] - LENGTH / 2) < LENGTH / 4
+        assert of.membrane[inside, 0] == pytest.approx(young * h * z * bent, rel=0.01, abs=1e-6)
+        assert of.moment[inside, 0] == pytest.approx(young * h**3 / 12 * bent, rel=0.01)
+    whole = abut.mid_surface(solution, "strip")
+    inside = np.abs(whole.points[:, 0] - LENGTH / 2) < LENGTH / 4
+    assert whole.thickness == pytest.approx(THICK)
+    assert whole.points[:, 2] == pytest.approx(0.0)
+    assert whole.moment[inside, 0] == pytest.approx(couple, rel=0.01)
+    assert whole.membrane[inside] == pytest.approx(0.0, abs=1e-6)
+    abut.write(solution, tmp_path / "out")
+    assert "laminates_0001.vtu" in (tmp_path / "out" / "laminates.pvd").read_text()
+    assert "<td>strip</td>" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    with pytest.raises(InputError, match=r"'strop' is no shell; shells: strip-layer1, .*strip$"):
+        abut.mid_surface(solution, "strop")
 
 
 def test_faces_and_groups(tmp_path: Path) -> None:
@@ -94,6 +131,19 @@ def test_a_clamp_holds_a_strip_however_thin(tmp_path: Path) -> None:
         thick.mesh, [solid], thick.supports, [load], equations=thick.equations, couplings=thick.couplings
     )
     assert tip(abut.solve(model)) == pytest.approx(-1e-4 * LENGTH**4 / (8.0 * E / 12.0), rel=0.02)
+
+
+def test_too_thin_for_double_precision(tmp_path: Path) -> None:
+    """1:5000: forces that displacements in double precision leave open are a good part of those that act. The certificate
+    fails the balance, says why, and what keeps the bending stiffness."""
+    thin = LENGTH / 5000.0
+    thick = abut.thicken(strip(tmp_path / "a.msh"), {"strip": abut.Shell(thin)}, [abut.MidSupport("left", **CLAMPED)])
+    solid = abut.Solid("strip", abut.LinearElastic(E, 0.0), integration="reduced")
+    load = abut.Pressure("strip.spos", 1e-4 * thin**3)
+    solution = abut.solve(abut.Model(thick.mesh, [solid], thick.supports, [load], equations=thick.equations))
+    ((_, cure),) = [(check, cure) for check, cure in cures(solution) if check.name == "model balance"]
+    assert "double precision" in cure
+    assert "E t^3" in cure
 
 
 def test_refused(tmp_path: Path) -> None:

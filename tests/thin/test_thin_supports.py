@@ -12,7 +12,7 @@ import pytest
 import abut
 from abut.errors import InputError
 from abut.output.forces import table
-from models.decks import solve, step
+from models.decks import load, solve, step
 from models.gmsh_files import write_msh
 from models.thin import CLAMPED, INERTIA, LENGTH, STEEL, THICK, WIDTH, E, solved, strip
 
@@ -129,6 +129,12 @@ def test_cantilever_in_a_deck(code: str, tmp_path: Path) -> None:
     ((force, moment),) = rows(solution).values()
     assert force == pytest.approx([0.0, -0.2 * count, -0.1 * count], abs=1e-6)
     assert moment == pytest.approx([0.0, 1.0 * count, -2.0 * count], abs=1e-5)
+
+
+@pytest.mark.parametrize(("held", "told"), [("LEFT, 1, 6", True), ("LEFT, 1, 3", False), ("LEFT, XSYMM", False)])
+def test_decks_say_that_clamps_keep_the_thickness(held: str, told: bool, tmp_path: Path) -> None:
+    notes = load(tmp_path, deck_of("S4", held) + step("*CLOAD", "RIGHT, 3, .1")).notes
+    assert any("keep their thickness" in note for note in notes) == told
 
 
 def test_what_pulls_at_a_held_node_is_its_supports(tmp_path: Path) -> None:

@@ -30,7 +30,7 @@ from abut.analysis.surface_stress import cells_around, loaded_points, normal_str
 from abut.analysis.thin_give import bends
 from abut.analysis.volume_change import volume_change
 from abut.bodies.averages import averages
-from abut.bodies.recovery import at_points, recovered
+from abut.bodies.recovery import at_points, of_shells, recovered
 from abut.cells import MAX_FACET_NODES
 from abut.dofs import dofs_at
 from abut.mesh.surface import Surface
@@ -131,6 +131,7 @@ def step_result(
         iterations=attempt.iterations,
         displacement=end.nodal,
         stress=stress,
+        own_stress=of_shells(solids, values),
         reaction=(end.reaction + end.sprung).reshape(-1, model.dim).sum(axis=0),
         **vars(reactions(model, constraints.bodies, by_supports, end.nodal)),
         load=assembled.loaded.resultant @ balance.factors + end.following.reshape(-1, model.dim).sum(axis=0),

@@ -74,6 +74,19 @@ def at_points(of: Patches, values: Array, n_points: int) -> Array:
     return np.asarray(total / np.maximum(np.bincount(of.point, minlength=n_points), 1)[:, None])
 
 
+def of_shells(solids: Solids, values: Array) -> dict[str, Array]:
+    """Values (n, 6) that each shell has at its own points, in their order, where bodies share some: layers of one shell
+    differ there. values: (n_values, 6)."""
+    if not solids.patches.shared:
+        return {}
+    bodies = list(solids.materials)
+    return {
+        body: values[solids.patches.body == bodies.index(body)]
+        for body in solids.mesh.shells
+        if body in solids.materials
+    }
+
+
 def nodal_stress(
     solids: Solids, displacement: Array, temperature: TemperatureChange = UNHEATED, history: History | None = None
 ) -> Array:

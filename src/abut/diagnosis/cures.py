@@ -33,6 +33,8 @@ def cure(check: Check, solution: Solution) -> str:
         return ""
     if check.name == "stress error":
         return _stress_error(solution)
+    if check.name == "model balance" and (few := _few_digits(solution)):
+        return few
     if check.name.partition(":")[0] in (FREQUENCIES, BUCKLING):
         return OF_MODES[check.name.partition(": ")[2]]
     if check.name == "locking":
@@ -92,6 +94,19 @@ MODEL = {
     "response": "check that what is moved or loaded touches another body or a support: signs and units of motions and "
     "loads, gaps, names of contacts; `abut check` names gaps that stay open",
 }
+
+
+def _few_digits(solution: Solution) -> str:
+    """Where no more is left of the balance than displacements in double precision leave, theory (V14); else empty."""
+    step = max(solution.steps, key=lambda step: step.balance_error / step.balance_limit)
+    if step.balance_error * step.reference_force > step.rounding:
+        return ""
+    share = step.rounding / max(float(np.abs(step.load).max()), float(np.abs(step.reaction).max()), 1e-300)
+    return (
+        f"displacements in double precision leave forces of {step.rounding:.2g} open here, {share:.0e} of those that act: "
+        "parts are too thin for their length, or too unlike in stiffness, and results as wrong. Make thin parts thicker "
+        "with a Young's modulus that keeps E t^3, or shorter"
+    )
 
 
 def _stress_error(solution: Solution) -> str:

@@ -10,8 +10,8 @@ from pathlib import Path
 ASIDE = "earlier"
 OPTIONAL = ("fields.frd", "modes.csv", "modes.vtu", "beams.csv")
 INDEX = ("summary.json", "report.html", "history.csv", "forces.csv", "run.jsonl", "fields.pvd", *OPTIONAL)
-_OF_STEP = re.compile(r"(?:fields|shells|beams|contact_[A-Za-z0-9._-]+?)_(\d{4,7})(?:_\d{4,})?\.p?vtu")
-_OF_ALL = re.compile(r"(?:shells|beams|contact_[A-Za-z0-9._-]+)\.pvd")
+_OF_STEP = re.compile(r"(?:fields|shells|laminates|beams|contact_[A-Za-z0-9._-]+?)_(\d{4,7})(?:_\d{4,})?\.p?vtu")
+_OF_ALL = re.compile(r"(?:shells|laminates|beams|contact_[A-Za-z0-9._-]+)\.pvd")
 _TABLE = re.compile(r"probe_[A-Za-z0-9._-]+\.csv")
 _HEAD = b"step,factor,converged,point"  # of a probe's table; other tables are the user's
 

@@ -14,7 +14,7 @@ from abut.solution import Solution, Step, mid_surface
 from abut.solution.beam_lines import forces, grid, known
 from abut.solution.grids import Grid
 
-SHELLS, BEAMS = "shells", "beams"
+SHELLS, LAMINATES, BEAMS = "shells", "laminates", "beams"
 TABLE = "beams.csv"
 HEAD = [
     "step", "time", "beam", "x", "y", "z", "normal_force", "torque", "force_x", "force_y", "force_z", "moment_x", "moment_y",
@@ -24,7 +24,8 @@ HEAD = [
 
 def kinds(model: Model) -> list[str]:
     """What there are files of."""
-    return ([SHELLS] if model.mesh.shells else []) + ([BEAMS] if known(model) else [])
+    there = {SHELLS: model.mesh.shells, LAMINATES: mid_surface.laminates(model.mesh), BEAMS: known(model)}
+    return [kind for kind, bodies in there.items() if bodies]
 
 
 def file_of(kind: str, step: Step) -> str:
@@ -52,9 +53,10 @@ def write_step(folder: Path, model: Model, step: Step, output: Output) -> None:
 
 
 def _grid(kind: str, model: Model, step: Step) -> Grid:
-    if kind == SHELLS:
-        return mid_surface.grid(model.mesh, step, model.small_strains)
-    return grid(model, step)
+    if kind == BEAMS:
+        return grid(model, step)
+    shells = model.mesh.shells if kind == SHELLS else mid_surface.laminates(model.mesh)
+    return mid_surface.grid(model.mesh, step, model.small_strains, shells)
 
 
 def table(solution: Solution) -> str:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from abut.solution import Solution
 from abut.solution.beam_forces import unknown
 from abut.solution.beam_lines import forces
-from abut.solution.mid_surface import of_step
+from abut.solution.mid_surface import laminates, of_step
 
 BEAM_HEAD = ["beam", "step", "normal force, from", "to", "shear force", "bending moment", "torque", ""]
 SHELL_HEAD = ["shell", "step", "membrane force, from", "to", "moment, from", "to", "shear force"]
@@ -44,7 +44,7 @@ def _beams(solution: Solution) -> Iterator[list[str]]:
 def _shells(solution: Solution) -> Iterator[list[str]]:
     model = solution.model
     for step in solution.steps:
-        for body in model.mesh.shells:
+        for body in (*model.mesh.shells, *laminates(model.mesh)):
             of = of_step(model.mesh, step, body, model.small_strains)
             numbers = (*_principal(of.membrane), *_principal(of.moment), np.linalg.norm(of.shear, axis=1).max())
             yield [body, f"{step.number}", *(f"{value:.6g}" for value in numbers)]

@@ -1,12 +1,14 @@
 """Results of a shell that was made solid, on its mid-surface: displacement, turn, section forces.
 
 Of the nodes b at its negative and t at its positive side: u = (u_b + u_t) / 2, turn n x (u_t - u_b) / h. With the stress s
-at these, recovered as everywhere and linear between them, N = h (s_b + s_t) / 2 and M = h^2 (s_t - s_b) / 12. Q = div M on
-the surface, as moments balance, averaged over the cells around a node: through one cell the shear stress itself is no
+at these, recovered as everywhere in each layer and linear between them, N = h (s_b + s_t) / 2 and M = h^2 (s_t - s_b) / 12;
+of all layers as one N is their sum, M that of M + z N, z from the middle of all to that of the layer. Q = div M on the
+surface, as moments balance, averaged over the cells around a node: through one cell the shear stress itself is no
 parabola. (Tractions along the faces, times h / 2, are moments, too; they are left out.)"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,6 +27,7 @@ THROUGH = {  # of a solid: its kind on the mid-surface, corners; nodes: below, a
     "hex20": ("quad8", 4),
     "wedge15": ("tri6", 3),
 }
+LAYER = "-layer"  # between the name of a shell and the number of its layer, in that of the body
 ALONG = np.cos(np.radians(0.1))  # of the global x and the normal, from which on z leads instead (as in CalculiX)
 
 
@@ -73,7 +76,7 @@ def mid_surface(solution: Solution, body: str, step: int = -1) -> MidSurface:
     solution : Solution
         Of a model with ``thicken``'s mesh, or of a deck with shells.
     body : str
-        The shell.
+        The shell; of one of layers its name, for all as one, or a layer's.
     step : int
         Which of the steps, the last where left out.
 
@@ -88,17 +91,33 @@ def mid_surface(solution: Solution, body: str, step: int = -1) -> MidSurface:
         For a body that is no shell, and a step that there is not.
     """
     mesh = checks.instance(solution, Solution, "mid_surface", "a solution (abut.Solution)").model.mesh
-    if body not in mesh.shells:
-        raise InputError(f"mid_surface: body {body!r} is no shell; shells: {', '.join(mesh.shells) or 'none'}")
+    if not layers_of(mesh, body):
+        known = ", ".join([*mesh.shells, *laminates(mesh)]) or "none"
+        raise InputError(f"mid_surface: body {body!r} is no shell; shells: {known}")
     if not -len(solution.steps) <= step < len(solution.steps):
         raise InputError(f"mid_surface: step: there are {len(solution.steps)} steps, got {step}")
     return of_step(mesh, solution.steps[step], body, solution.model.small_strains)
 
 
+def laminates(mesh: MeshRecord) -> tuple[str, ...]:
+    """Names of the shells that have layers, NAME-layer1 and so on."""
+    names = [body.removesuffix(f"{LAYER}1") for body in mesh.shells if body.endswith(f"{LAYER}1")]
+    return tuple(name for name in names if name not in mesh.shells)
+
+
+def layers_of(mesh: MeshRecord, name: str) -> tuple[str, ...]:
+    """The bodies of a shell from its negative side: itself, or its layers; none for what is no shell."""
+    if name in mesh.shells:
+        return (name,)
+    count = next(i for i in range(len(mesh.shells) + 1) if f"{name}{LAYER}{i + 1}" not in mesh.shells)
+    return tuple(f"{name}{LAYER}{i + 1}" for i in range(count))
+
+
 def of_step(mesh: MeshRecord, step: Step, body: str, small: bool) -> MidSurface:
     """The same of a step. small: turns are, and normals those of the undeformed shell."""
-    layers, cells = _layers(mesh, body)
-    below, above = layers.T
+    bodies = layers_of(mesh, body)
+    through, cells = _through(mesh, bodies)
+    below, above = through[:, 0], through[:, -1]
     x, u = mesh.points, step.displacement
     across = x[above] - x[below]
     rest, normal = _unit(across)
@@ -109,12 +128,20 @@ def of_step(mesh: MeshRecord, step: Step, body: str, small: bool) -> MidSurface:
         before = normal
         thickness, normal = _unit(across + moved)
         rotation = _turn(before, normal)
-    low, high = _tensors(step.stress[below]), _tensors(step.stress[above])
     first = _first(normal)
     axes = np.stack([first, np.cross(normal, first), normal], axis=1)
     points, moved = 0.5 * (x[below] + x[above]), 0.5 * (u[below] + u[above])
-    force = thickness[:, None, None] * (low + high) / 2.0
-    bending = thickness[:, None, None] ** 2 * (high - low) / 12.0
+    at = (
+        np.linalg.norm(x[through] - x[below][:, None], axis=2) / rest[:, None] - 0.5
+    )  # of the thickness, from the middle
+    force, bending = np.zeros((2, len(points), 3, 3))
+    for i, layer in enumerate(bodies):
+        stress = _stress(mesh, step, layer)
+        low, high = _tensors(stress[through[:, i]]), _tensors(stress[through[:, i + 1]])
+        own, middle = thickness * (at[:, i + 1] - at[:, i]), thickness * (at[:, i + 1] + at[:, i]) / 2.0
+        carried = own[:, None, None] * (low + high) / 2.0
+        force += carried
+        bending += own[:, None, None] ** 2 * (high - low) / 12.0 + middle[:, None, None] * carried
     inside = np.eye(3) - normal[:, :, None] * normal[:, None, :]
     shear = _divergence(points if small else points + moved, cells, inside @ bending @ inside)
     return MidSurface(
@@ -123,16 +150,16 @@ def of_step(mesh: MeshRecord, step: Step, body: str, small: bool) -> MidSurface:
     )  # fmt: skip
 
 
-def grid(mesh: MeshRecord, step: Step, small: bool) -> Grid:
-    """All shells of a mesh, for viewers; cells have the number of their body."""
+def grid(mesh: MeshRecord, step: Step, small: bool, shells: Sequence[str]) -> Grid:
+    """Shells of a mesh, for viewers; cells have the number of their body, or of the first one of layers."""
     points, blocks, bodies, data, first = [], [], [], list[dict[str, Vector]](), 0
     names = list(mesh.bodies)
-    for body in mesh.shells:
+    for body in shells:
         of = of_step(mesh, step, body, small)
         points.append(of.points)
         for kind, cells in of.cells.items():
             blocks.append((kind, (cells + first).astype(np.int32)))
-            bodies.append(np.full(len(cells), names.index(body), np.int32))
+            bodies.append(np.full(len(cells), names.index(layers_of(mesh, body)[0]), np.int32))
         first += len(of.points)
         data.append(
             {
@@ -148,6 +175,25 @@ def grid(mesh: MeshRecord, step: Step, small: bool) -> Grid:
         )
     joined = {name: np.concatenate([each[name] for each in data]) for name in data[0]}
     return Grid(np.concatenate(points), tuple(blocks), joined, {"body": np.concatenate(bodies)})
+
+
+def _through(mesh: MeshRecord, bodies: Sequence[str]) -> tuple[Numbers, dict[str, Numbers]]:
+    """Points (n, layers + 1) through the thickness at each point of the mid-surface, between layers too, and its cells."""
+    through, cells = _layers(mesh, bodies[0])
+    for body in bodies[1:]:
+        layer = _layers(mesh, body)[0]
+        layer = layer[np.argsort(layer[:, 0])]
+        through = np.column_stack([through, layer[np.searchsorted(layer[:, 0], through[:, -1]), 1]])
+    return through, cells
+
+
+def _stress(mesh: MeshRecord, step: Step, body: str) -> Vector:
+    """At the mesh's points (n_points, 6), that of the body where it shares some with others."""
+    if body not in step.own_stress:
+        return step.stress
+    result = np.zeros_like(step.stress)
+    result[mesh.nodes_of(body)] = step.own_stress[body]
+    return result
 
 
 def _layers(mesh: MeshRecord, body: str) -> tuple[Numbers, dict[str, Numbers]]:

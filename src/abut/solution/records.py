@@ -123,9 +123,9 @@ class Step:
     landed: tuple[float, float] | None = None  # friction that touched and stuck in the step, and all that it may carry
     energy: Energy | None = None  # of a converged step of a model with friction
     stress_error: StressError | None = None  # None where nothing gives way
-    remembered: Mapping[str, NDArray[np.float64]] = field(
-        default_factory=dict
-    )  # by materials, at points: (n_points, ...); and fields beside displacements
+    # by materials, at points: (n_points, ...); and fields beside displacements
+    remembered: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
+    own_stress: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)  # at points of shells that share
     flow: Flow | None = None  # None where no material yields
     volume_change: VolumeChange | None = None  # None where no body keeps its volume
     preloads: Mapping[str, PreloadResult] = field(default_factory=dict)

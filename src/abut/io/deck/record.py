@@ -353,10 +353,9 @@ class Deck:
     """A whole deck. nodes (n,) sorted; points (n, 3); sets and surfaces by name as the deck first spells it; fixed: supports
     outside the steps; initial: node -> temperature; quiet, ignored: see ``supported.Sifted``; small_sliding: a
     contact pair asks for it; thicknesses: of shells at nodes; normals: of shells at (element, node); thin: what stands for
-    the nodes of shells once they are expanded; modes: what the last step asks for beside;
-    absences: of elements that go on the way, or come; layers: of shells of several the solids, from the negative side;
-    hinges: (m, 2) nodes that hinges join within a body; stresses: of elements before the first step, one or those at
-    integration points."""
+    the nodes of shells once they are expanded; modes: what the last step asks for beside; absences: of elements that go, or
+    come; layers: of shells of several the solids, from the negative side; hinges: (m, 2) nodes that hinges join within a
+    body; stresses: of elements before the first step, one or those at integration points."""
 
     path: str
     nodes: Numbers
