@@ -137,18 +137,18 @@ def test_steps_that_become_too_short() -> None:
         assert FIRST * 0.5 ** (cuts + 1) < SMALLEST <= FIRST * 0.5**cuts
 
 
-def test_strides_are_followed() -> None:
+def test_a_stride_is_followed() -> None:
     """Of an earlier run, that went on after failures with a share of the way."""
     pace, followed = Pace([1.0], legs=(0.5,)), Pace([1.0], legs=(0.5,))
     pace.stride(0.3)
     time = pace.end
     assert time == pytest.approx(0.15)  # of the way to the next leg
     pace.take(EASY)
-    followed.repeat(time, EASY, strides=(0.7, 0.3))
+    followed.repeat(time, EASY, stride=0.3)
     assert (followed.time, followed.end) == (time, pace.end)
     pace, followed = Pace([1.0]), Pace([1.0])
     pace.take(EASY)
-    followed.repeat(FIRST, EASY, strides=(0.7, 0.3))  # it was none of them
+    followed.repeat(FIRST, EASY, stride=0.3)  # it was another one
     assert (followed.time, followed.end) == (FIRST, pace.end)
 
 

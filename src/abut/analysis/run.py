@@ -27,7 +27,7 @@ from abut.nonlinear.again import Again
 from abut.nonlinear.attempt import Attempt
 from abut.nonlinear.large_steps import LargeSteps
 from abut.nonlinear.march import Control, Stepper, march
-from abut.nonlinear.one_step import strides
+from abut.nonlinear.one_step import stride
 from abut.nonlinear.pace import Pace, Slips, given_pace, pace_of
 from abut.nonlinear.settings import DEFAULT, Settings
 from abut.nonlinear.stepping import ABSURD, SmallSteps, prepared
@@ -207,10 +207,10 @@ class Run:
         """After the steps ``done``, which ended in ``states`` but for the first, that of the start."""
         pace = self._begun()
         for earlier, before, saved in zip((None, *states), states, done):
-            tried = strides(self.settings) if is_dragged(saved.state) else ()
+            led = stride(self.settings) if is_dragged(saved.state) else None
             begun = self._onset(earlier if pace.goes_on else None, before, saved.state)
             share = landed_in(saved.state).share
-            pace.repeat(saved.state.time, len(saved.iterations), share, begun, tried)
+            pace.repeat(saved.state.time, len(saved.iterations), share, begun, led)
         return pace
 
     def _begun(self) -> Pace:

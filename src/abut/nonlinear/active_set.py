@@ -215,7 +215,8 @@ def hopeless(changes: Sequence[int], rows: int, settings: Settings) -> bool:
 
 def closing(violations: Sequence[float], rows: int, settings: Settings) -> bool:
     """Whether the law's largest violation falls so evenly that it will soon be gone: an edge of contact that goes back facet
-    by facet, theory (V9). rows: those of the step so far."""
+    by facet, theory (V9). rows: those of the step so far. Without it ``test_loose_pin`` takes 62 iterations instead of 57
+    (12 cells along a quarter)."""
     patience = settings.newton.patience
     last = violations[-1 - patience :]
     if len(last) <= patience or any(after >= before for before, after in pairwise(last)):

@@ -17,7 +17,6 @@ from abut.nonlinear.friction_newton import Course, slid
 from abut.nonlinear.interior_point import Interior, Manner, Programme, begin, iterate, near
 from abut.nonlinear.iteration import Found, Increment, largest_pressure, points
 from abut.nonlinear.newton import End, Method, newton
-from abut.nonlinear.settings import Settings
 from abut.problem.linearised import Linearised
 from abut.problem.pair import Pair
 from abut.solution import Iteration
@@ -62,20 +61,19 @@ def _whole(pair: Pair, closed: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 
 def search(course: Course, state: State, limit: int) -> Found | None:
-    """The solution of a load step from anywhere; None where none of the ways to it finds one. limit: of iterations of each.
+    """The solution of a load step from anywhere; None where it is not found. limit: of iterations.
 
     Newton's method ends it as soon as interior points tell the status of most multipliers."""
     interior = course.increment.settings.interior
-    bold = Manner(0.95, interior.central, least=interior.central**2)
-    for manner in (bold, replace(bold, boundary=0.7, central=50.0 * interior.central), replace(bold, dilates=True)):
-        try:
-            with np.errstate(all="ignore"):  # what is no number ends it
-                found = _by_cones(course, state, manner, limit)
-        except SingularModelError:
-            continue
-        if found is not None:
-            return found
-    return None
+    manner = Manner(0.95, interior.central, least=interior.central**2)
+    try:
+        with np.errstate(all="ignore"):  # what is no number ends it
+            programme = Programme.of(course.solver, course.increment.settings)
+            here = begin(programme, state, manner)
+            method = InteriorSliding(course, programme, manner, float(np.abs(here.state.multipliers).max()))
+            return newton(method, Trial(here, np.where(programme.solver.system.tied, CLOSED, OPEN)), limit)[0].found
+    except SingularModelError:
+        return None
 
 
 @dataclass(frozen=True)
@@ -108,12 +106,10 @@ class InteriorSliding(Method[Trial]):
         now = there.state.with_status(wanted)
         self._course.add(now, changed, clock)
         close = near(self._programme, there).missed <= largest_pressure(there.state, increment)
-        if close:
-            there = replace(there, dilatancy=_faded(there.dilatancy, increment.settings))
         if np.abs(there.state.multipliers).max() < increment.settings.newton.rounding * self._first:
             return Trial(there, wanted, _apart(self._course, self._programme, now), apart=True)
         found = None
-        if close and changed <= self._few and not there.dilatancy:
+        if close and changed <= self._few:
             try:
                 found = slid(self._course, now, increment.settings.newton.solutions)
             except SingularModelError:
@@ -132,18 +128,6 @@ class InteriorSliding(Method[Trial]):
         if self._short > settings.newton.patience or mean < (settings.newton.stalled * least) ** 2:
             return End.STALLED
         return None
-
-
-def _by_cones(course: Course, state: State, manner: Manner, limit: int) -> Found | None:
-    programme = Programme.of(course.solver, course.increment.settings)
-    here = begin(programme, state, manner)
-    method = InteriorSliding(course, programme, manner, float(np.abs(here.state.multipliers).max()))
-    return newton(method, Trial(here, np.where(programme.solver.system.tied, CLOSED, OPEN)), limit)[0].found
-
-
-def _faded(dilatancy: float, settings: Settings) -> float:
-    """What is left of it by an iteration close to what gaps and slips are to be."""
-    return settings.interior.fade * dilatancy if dilatancy > settings.interior.met else 0.0
 
 
 def _apart(course: Course, programme: Programme, state: State) -> Found | None:

@@ -30,12 +30,11 @@ Numbers = NDArray[np.int64]
 @dataclass(frozen=True)
 class Manner:
     """How bold steps are. boundary: share of the way to it; central: what the smallest product keeps of the mean of all;
-    dilates: begins with surfaces that part as they slip, which makes the problem a convex one; least: share of the mean
-    product that is aimed at, at least; correctors: of Gondzio's at most, for products of pressures and gaps alone."""
+    least: share of the mean product that is aimed at, at least; correctors: of Gondzio's at most, for products of pressures
+    and gaps alone."""
 
     boundary: float
     central: float
-    dilates: bool = False
     least: float = 0.0
     correctors: int = 0
 
@@ -123,13 +122,11 @@ def _bound(pair: Pair, factors: Vector, pressure: Vector, steepest: float) -> tu
 class Interior:
     """state: displacements and multipliers, pressures positive and tractions within their bounds; gap: (k,) positive, as
     pressures, which gaps are to be; slip: (r, d) inside its cone, as pressures, its last components what slips are to be;
-    dilatancy: gaps that slip opens, 1 to 0; length: of the last step; opening, closing: (k,) d g / g and d p / p of the last
-    predictor."""
+    length: of the last step; opening, closing: (k,) d g / g and d p / p of the last predictor."""
 
     state: State
     gap: Vector
     slip: Vector
-    dilatancy: float
     opening: Vector
     closing: Vector
     length: float = 1.0
@@ -187,9 +184,7 @@ class _Near:
     @property
     def missed(self) -> float:
         """Largest difference between what gaps and slips are and what they are to be."""
-        opened = self.here.gap.copy()
-        opened[self.programme.rubs] += self.here.dilatancy * self.slope * self.here.slip[:, 0]
-        off = [np.abs(self.gaps - opened), np.abs(self.slips - self.here.slip[:, 1:]).ravel()]
+        off = [np.abs(self.gaps - self.here.gap), np.abs(self.slips - self.here.slip[:, 1:]).ravel()]
         return float(np.concatenate(off).max(initial=0.0))
 
 
@@ -225,7 +220,7 @@ def begin(programme: Programme, state: State, manner: Manner) -> Interior:
     slip = mirrored(traction) * (product_of_both / depth(traction))[:, None]
     start = replace(state, unknowns=state.unknowns + du, multipliers=multipliers)
     gaps, none = np.full(len(pressure), programme.softness * size), np.zeros(len(pressure))
-    return Interior(start, gaps, slip, float(manner.dilates), none, none)
+    return Interior(start, gaps, slip, none, none)
 
 
 @dataclass(frozen=True)
@@ -273,7 +268,7 @@ def iterate(at: _Near, manner: Manner) -> Interior:
         multipliers=here.state.multipliers + length * step.multipliers,
     )
     return Interior(
-        state, here.gap + length * step.gap, here.slip + length * step.slip, here.dilatancy,
+        state, here.gap + length * step.gap, here.slip + length * step.slip,
         first.gap / here.gap, first.pressure / at.pressure, length,
     )  # fmt: skip
 
@@ -325,13 +320,11 @@ def _left(at: _Near, shift: Vector, slip: Vector) -> Vector:
     """Residual of gap + d gap = shift - (g / p) dp and slip + d slip = that told - W^2 (mu dp, dt), (n,)."""
     programme, here, system = at.programme, at.here, at.programme.solver.system
     rubbed = programme.scale[programme.rubs]
-    residual, wanted = -system.gap(here.state), shift.copy()
+    residual = -system.gap(here.state)
     for a in range(programme.along.shape[1]):
         present = programme.along[:, a] >= 0
         residual[programme.along[present, a]] += (rubbed * slip[:, 1 + a])[present]
-    if len(programme.rubs):
-        wanted[programme.rubs] += here.dilatancy * at.slope * slip[:, 0]
-    residual[programme.normal] += programme.scale * wanted
+    residual[programme.normal] += programme.scale * shift
     residual[programme.idle] = (-system.scale * here.state.multipliers)[programme.idle]
     return residual
 
@@ -345,13 +338,10 @@ def _softening(at: _Near) -> sp.csr_matrix:
     there = programme.along >= 0
     for a in range(programme.along.shape[1]):
         row, present = programme.along[:, a], there[:, a]
-        by_bound = -rubbed * soft[:, 1 + a, 0] * at.slope
-        entries.append((row[present], at_rubs[present], by_bound[present]))
-        entries.append((at_rubs[present], row[present], here.dilatancy * by_bound[present]))
+        entries.append((row[present], at_rubs[present], (-rubbed * soft[:, 1 + a, 0] * at.slope)[present]))
         for b in range(programme.along.shape[1]):
             both = present & there[:, b]
             entries.append((row[both], programme.along[both, b], (-rubbed * soft[:, 1 + a, 1 + b])[both]))
-    entries.append((at_rubs, at_rubs, -here.dilatancy * rubbed * soft[:, 0, 0] * at.slope**2))
     entries.append((programme.idle, programme.idle, -programme.solver.system.scale[programme.idle]))
     row, column, value = (np.concatenate(parts) for parts in zip(*entries))
     return sp.csr_matrix((value, (row, column)), shape=(n, n))

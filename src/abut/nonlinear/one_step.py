@@ -128,7 +128,6 @@ class Led:
     """Attempts at a step: its parts, the last of them at rest; or the one that failed and that nothing follows."""
 
     attempts: tuple[Attempt, ...]
-    began: bool = True  # whether any part has converged
 
     @property
     def converged(self) -> bool:
@@ -136,22 +135,17 @@ class Led:
         return self.attempts[-1].converged
 
 
-def strides(settings: Settings) -> tuple[float, float]:
-    """Of the way to the next goal, that are tried under a drag."""
-    longest = settings.steps.smallest**0.5
-    return longest, longest / 8.0
+def stride(settings: Settings) -> float:
+    """Of the way to the next goal, that is tried under a drag."""
+    return float(settings.steps.smallest**0.5)
 
 
 def led_on(setting: Setting, before: State, pace: Pace) -> Led:
     """A step from the converged state ``before``, where no step without a drag is short enough; ``pace`` goes on with its
     length."""
-    for share in strides(setting.settings):
-        pace.stride(share)
-        assert pace.end is not None
-        led = stabilised(setting, before, pace.end)
-        if led.converged or led.began:
-            break
-    return led
+    pace.stride(stride(setting.settings))
+    assert pace.end is not None
+    return stabilised(setting, before, pace.end)
 
 
 def stabilised(setting: Setting, before: State, time: float) -> Led:
@@ -191,7 +185,7 @@ def stabilised(setting: Setting, before: State, time: float) -> Led:
         strength.ease(len(part.iterations))
     assert part is not None
     why = f"under a drag on all motion {why}"
-    return Led((replace(part, iterations=spent or part.iterations, converged=False, reason=why),), bool(parts))
+    return Led((replace(part, iterations=spent or part.iterations, converged=False, reason=why),))
 
 
 def is_gone(problem: ContactProblem, before: State, here: State, sizes: float) -> bool:

@@ -132,15 +132,14 @@ class Pace:
             self._length = min(factor * (taken if limited else self._length), self._longest)
 
     def repeat(
-        self, time: float, iterations: int, landed: float = 0.0, onset: Onset = NO_ONSET, strides: Sequence[float] = ()
+        self, time: float, iterations: int, landed: float = 0.0, onset: Onset = NO_ONSET, stride: float | None = None
     ) -> None:
-        """Take a step of an earlier run that ended at ``time``, perhaps one of ``strides``."""
+        """Take a step of an earlier run that ended at ``time``, perhaps one of a share ``stride``."""
         length = self._length
-        for share in strides:
-            self.stride(share)
-            if self.end is not None and abs(self.end - time) < self._same:
-                break
-            self._length = length
+        if stride is not None:
+            self.stride(stride)
+            if self.end is None or abs(self.end - time) >= self._same:
+                self._length = length
         while self.end is not None and self.end > time + self._same and not self.stuck:
             self.halve()
         if self._follows and self.end is not None and abs(self.end - time) > self._same:

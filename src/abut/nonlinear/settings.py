@@ -137,7 +137,7 @@ class InteriorSettings:
         "test_search.py",
     )  # fmt: skip
     steepest: float = _of(100.0, "coefficient of friction", "of surfaces that never slip", "test_friction.py")
-    fade: float = _of(0.3, "of the last one", "softness or dilatancy once laws are met", "test_smooth_friction_runs.py")
+    fade: float = _of(0.3, "of the last one", "softness once laws are met", "test_smooth_friction_runs.py")
     met: float = _of(
         0.01, "of the largest pressure", "violation of a softened law that is met", "test_smooth_friction_runs.py"
     )
