@@ -36,6 +36,7 @@ from abut.benchmarks import (
     preloads,
     punches,
     removals,
+    response,
     stability,
     started,
     subsurface,
@@ -81,6 +82,7 @@ BENCHMARKS: dict[str, Benchmark] = {
         *started.BENCHMARKS,
         *joined.BENCHMARKS,
         *modes.BENCHMARKS,
+        *response.BENCHMARKS,
         *mapped.BENCHMARKS,
         *penetration.BENCHMARKS,
     )
