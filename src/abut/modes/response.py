@@ -80,7 +80,8 @@ def _harmonic(
     inertia = mass(model.mesh, densities(model)) @ shift.ravel()
     shaken = _shaken(constraints, held, found, np.column_stack([real, ahead, inertia]))
     angular = 2.0 * np.pi * at
-    factors = np.column_stack([np.ones(len(at)), np.full(len(at), 1j), angular**2 + 0j])
+    of_base = angular**2 - 1j * wanted.rayleigh[0] * angular
+    factors = np.column_stack([np.ones(len(at)), np.full(len(at), 1j), of_base])
     coordinates = modes.amplitudes(angular) * (factors @ shaken.modal.T)
     last = Oscillators(modes.omega[-1:], modes.damping[-1:])
     beyond = (
