@@ -118,6 +118,23 @@ def test_a_body_that_nothing_holds_flies_off() -> None:
     assert [bool(line.unknown) for line in lines] == [True, True]
 
 
+def test_loads_on_what_is_free_and_has_no_mass_are_refused() -> None:
+    blocks = {
+        "held": make.rectangle([0, 1], [0, 1], cells=[2, 2]),
+        "loose": make.rectangle([2, 3], [0, 1], cells=[2, 2]),
+    }
+    model = abut.Model(
+        make.join(blocks),
+        plane="stress",
+        solids=[abut.Solid("held", abut.LinearElastic(1e3, 0.0, density=1.0))],
+        rigid=[abut.Rigid("loose")],
+        supports=[abut.Support("held.left", x=0, y=0)],
+        modes=[abut.Frequencies(3), abut.Transient(1.0, [abut.Force("loose", (0.0, 1.0))])],
+    )
+    with pytest.raises(InputError, match="without mass"):
+        abut.solve(model)
+
+
 LENGTH, HEIGHT, YOUNG, DENSITY = 100.0, 1.0, 210e3, 7.85e-9
 
 

@@ -42,10 +42,16 @@ def respond(
 ) -> ResponseResult:
     """constraints, held: as those that the modes ``found`` were found with; places: of the model's probes.
 
-    Raises InputError for states that are unstable, and for resonance without damping, SingularModelError."""
+    Raises InputError for states that are unstable, bodies that move freely without mass, and resonance without damping,
+    SingularModelError."""
     if found.eigenvalues.min(initial=0.0) < 0.0:
         raise InputError(
             "response: the loaded state is unstable (a frequency is negative), and would not vibrate about it"
+        )
+    if held.loose and found.eigenvalues.all():
+        raise InputError(
+            "response: some body moves as a whole without resistance and without mass, as rigid bodies do; loads would move "
+            "it infinitely fast: hold it, or give it a material with a density"
         )
     omega = np.sqrt(found.eigenvalues)
     modes = Oscillators(omega, shares(omega, _ratios(wanted), (wanted.rayleigh[0], wanted.rayleigh[1])))
