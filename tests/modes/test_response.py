@@ -71,6 +71,14 @@ def test_a_base_that_shakes_is_transmitted() -> None:
     np.testing.assert_allclose(moved, 2.0 * (1.0 + 0.2j * r) / (1.0 - r**2 + 0.2j * r), rtol=1e-5)
 
 
+def test_damping_by_mass_resists_motion_in_space() -> None:
+    """1 / (1 - r^2 + 2 i zeta r): only the spring is tied to the base."""
+    shaken = abut.Harmonic((0.1 * NATURAL, 3.0 * NATURAL), base=(0.0, 2.0), rayleigh=(0.2 * OMEGA, 0.0))
+    at, moved = motion(block(shaken))
+    r = at / NATURAL
+    np.testing.assert_allclose(moved, 2.0 / (1.0 - r**2 + 0.2j * r), rtol=1e-5)
+
+
 @pytest.mark.parametrize("zeta", [0.0, 0.05, 0.3])
 def test_a_sudden_load_overshoots_by_what_damping_leaves(zeta: float) -> None:
     """1 - exp(-zeta omega t) (cos omega_d t + zeta omega / omega_d sin omega_d t) at every time, twice the static value
