@@ -28,7 +28,12 @@ MADE_OF = {
     "start": ("start-plastic", "start-fit"),
     "steps": (),
 }  # no records of a model: benchmarks
-KIND = {"frequencies": "Frequencies", "buckling": "Buckling"}  # both are modes of a model
+KIND = {  # all are modes of a model
+    "frequencies": "Frequencies",
+    "buckling": "Buckling",
+    "harmonic": "Harmonic",
+    "transient": "Transient",
+}
 JOB = """schema = 1
 [model]
 plane = "strain"
@@ -71,6 +76,8 @@ WRONG = {  # one entry of each table that cannot be met
     "start": '[[steps]]\nname = "a"\n[[steps]]\nname = "b"\n[start]\nresults = "nowhere"\ntime = "nowhere"\n',
     "frequencies": "[frequencies]\ncount = 0\n",
     "buckling": "[buckling]\ncount = 0\n",
+    "harmonic": "[frequencies]\n[harmonic]\nbetween = [2, 1]\n",
+    "transient": "[frequencies]\n[transient]\nperiod = 0\n",
 }
 
 

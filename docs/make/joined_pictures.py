@@ -12,6 +12,7 @@ from matplotlib.collections import PolyCollection
 
 import abut
 from abut.benchmarks import BENCHMARKS, joined, local_axes, started
+from abut.benchmarks import response as shaking
 from abut.benchmarks.connectors import slider_crank, travel
 from abut.benchmarks.holds import LOAD, STIFFNESS, STRETCH
 from abut.benchmarks.preloads import sleeve
@@ -253,6 +254,37 @@ def modes() -> None:
     saved(figure, "strut")
 
 
+def response() -> None:
+    """The mass of ``abut verify sudden-load``, beside closed forms."""
+    solution = abut.solve(BENCHMARKS["sudden-load"].model(0))
+    over_time, steady = solution.responses
+    static, zeta = shaking.STATIC, shaking.DAMPING
+    figure, every = plots().subplots(1, 3, figsize=(9.6, 2.6), constrained_layout=True)
+    moved, r = steady.probes[0].displacement[:, 0, 1], steady.at * 2.0 * np.pi / shaking.OMEGA
+    fine = np.linspace(0.0, r.max(), 400)
+    exact = 1.0 / (1.0 - fine**2 + 2j * zeta * fine)
+    for axes, shown, known in (
+        (every[0], np.abs(moved) / static, np.abs(exact)),
+        (every[1], np.degrees(np.angle(moved)), np.degrees(np.angle(exact))),
+    ):
+        axes.plot(fine, known, color="black", lw=0.9, ls="--", label="theory")
+        axes.plot(r, shown, color=RED, marker="o", ms=3, ls="", label="abut")
+        axes.set_xlabel("frequency over the natural one")
+    every[0].set_ylabel("amplitude over the static one")
+    every[1].set_ylabel("phase, degrees")
+    damped = np.sqrt(1.0 - zeta**2)
+    wave = np.cos(damped * shaking.OMEGA * over_time.at) + zeta / damped * np.sin(damped * shaking.OMEGA * over_time.at)
+    periods = over_time.at * shaking.OMEGA / (2.0 * np.pi)
+    every[2].plot(periods, 1.0 - np.exp(-zeta * shaking.OMEGA * over_time.at) * wave, color="black", lw=0.9, ls="--")
+    every[2].plot(
+        periods[::4], over_time.probes[0].displacement[::4, 0, 1] / static, color=RED, marker="o", ms=3, ls=""
+    )
+    every[2].set_xlabel("periods after the load came")
+    every[2].set_ylabel("displacement over the static one")
+    every[0].legend(frameon=False)
+    saved(figure, "response")
+
+
 def lever() -> None:
     """The bars of ``abut verify lever``, displacements three hundred times as large."""
     solution = abut.solve(BENCHMARKS["lever"].model(0))
@@ -337,7 +369,7 @@ def sectors() -> None:
     saved(figure, "sectors")
 
 
-PICTURES = (sectors, fields, lever, probes, start, bolt, couplings, connectors, springs, stops, holds, modes)
+PICTURES = (sectors, fields, lever, probes, start, bolt, couplings, connectors, springs, stops, holds, modes, response)
 
 if __name__ == "__main__":
     for draw in PICTURES:

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
         Force,
         Frequencies,
         Gravity,
+        Harmonic,
         Hold,
         Integration,
         Model,
@@ -52,6 +53,7 @@ if TYPE_CHECKING:
         Temperature,
         Term,
         Traction,
+        Transient,
     )
     from abut.model.sector import Sector, Sectors, add_sectors
     from abut.model.stop import Stop, Stopped, add_stops
@@ -93,12 +95,13 @@ _HOME = {  # of public names that do not come from abut.model
 __all__ = [
     "AbutError", "Amplitude", "Anisotropic", "ArrudaBoyce", "Axes", "Beam", "BeamForces", "BodyForce", "Buckling",
     "Centrifugal", "Connector", "Contact", "ConvergenceError", "Coupling", "Equation", "Force", "FoundContact",
-    "Frequencies", "Gravity", "Hencky", "Hold", "InputError", "Integration", "LinearElastic", "LoadFactor", "Mesh",
-    "MidForce", "MidSupport",
+    "Frequencies", "Gravity", "Harmonic", "Hencky", "Hold", "InputError", "Integration", "LinearElastic", "LoadFactor",
+    "Mesh", "MidForce", "MidSupport",
     "MidSurface", "Model", "Moment", "MooneyRivlin", "NeoHooke", "NodalForce", "Ogden", "Orthotropic", "Output",
     "OverTemperature", "Penetration", "Plastic", "Preload", "Pressure", "PressureOverclosure", "Probe", "Removal",
     "ResultField", "Rigid", "Rotation", "Sector", "Sectors", "Shell", "SingularModelError", "Solid", "Solution",
-    "SolveOptions", "Spring", "Stop", "Stopped", "Support", "Temperature", "Term", "Thick", "Traction", "Yeoh",
+    "SolveOptions", "Spring", "Stop", "Stopped", "Support", "Temperature", "Term", "Thick", "Traction", "Transient",
+    "Yeoh",
     "add_sectors", "add_stops", "add_surfaces", "beam_forces", "check", "find_contacts", "from_meshio", "load_factors",
     "mid_surface", "plot", "result_field", "solve", "thicken", "to_pyvista", "write", "write_report",
 ]  # fmt: skip

@@ -231,3 +231,97 @@ def test_beams_vibrate_as_solids_do(tmp_path: Path, code: str) -> None:
     bending = 1.87510407**2 * np.sqrt(1e7 / 7.8e-9 / 12.0) / 10.0**2 / (2.0 * np.pi)
     np.testing.assert_allclose(found.modes[0].values, bending * np.array([0.2, 0.4]), rtol=0.015)
     assert any("full integration" in note for note in load_job(tmp_path / "deck.inp").notes) == (code != "B32")
+
+
+SHAKEN = FREQUENCY.replace("*FREQUENCY\n2", "*FREQUENCY, STORAGE=YES\n6")
+
+
+def answers(folder: Path, *steps: str) -> tuple[abut.Solution, abut.solution.ResponseResult]:
+    solved = solution(folder, bar("ALL, 2, 3", SHAKEN, *steps))
+    return solved, solved.responses[0]
+
+
+def test_steady_state_dynamics_of_a_bar(tmp_path: Path) -> None:
+    """u = F tan(k l) / (E A k) at its end, with E (1 + i beta omega) of Rayleigh's damping by stiffness; twenty cells of
+    first order are too stiff by 3e-4 of the second mode's square, which resonance would sharpen."""
+    step = (
+        "*STEP\n*STEADY STATE DYNAMICS\n2000., 9000., 5, 1.\n*MODAL DAMPING, RAYLEIGH\n,, 0., 1.E-6\n*CLOAD\nFREE, 1, 2.\n"
+        "*CLOAD, LOAD CASE=2\nFREE, 1, 1.\n*NODE PRINT, NSET=FREE\nU\n*END STEP"
+    )
+    _, result = answers(tmp_path, step)
+    np.testing.assert_allclose(result.at, np.linspace(2000.0, 9000.0, 5))
+    omega = 2.0 * np.pi * result.at
+    young = YOUNG * (1.0 + 1e-6j * omega)
+    k = omega * np.sqrt(DENSITY / young)
+    expected = 4.0 * (2.0 + 1.0j) * np.tan(k * LENGTH) / (young * 16.0 * k)
+    np.testing.assert_allclose(result.probes[0].displacement[:, 0, 0], expected, rtol=2e-3)
+
+
+def test_everything_that_is_held_shakes_together(tmp_path: Path) -> None:
+    """1 / cos(k l) at the free end of a bar whose held end moves by 1."""
+    step = (
+        "*STEP\n*STEADY STATE DYNAMICS\n2000., 9000., 5, 1.\n*BOUNDARY\nHELD, 1, 1, 1.\n"
+        "*NODE PRINT, NSET=FREE\nU\n*END STEP"
+    )
+    _, result = answers(tmp_path, step)
+    expected = 1.0 / np.cos(2.0 * np.pi * result.at / SPEED * LENGTH)
+    np.testing.assert_allclose(result.probes[0].displacement[:, 0, 0], expected, rtol=2e-3)
+
+
+def test_modal_dynamic_of_a_bar_that_is_pulled_suddenly(tmp_path: Path) -> None:
+    """The end moves at F c / (E A), away for the time in which waves go there and back, then home again: in the mean of a
+    period as far as at rest, at most twice that; six of the modes of a step leave out 1 / 13 of its corners."""
+    period = 4.0 * LENGTH / SPEED
+    step = f"*STEP\n*MODAL DYNAMIC\n{period / 64}, {period}\n*CLOAD\nFREE, 1, 2.\n*NODE PRINT, NSET=FREE\nU\n*END STEP"
+    _, result = answers(tmp_path, step)
+    assert len(result.at) == 65
+    static = 8.0 * LENGTH / (YOUNG * 16.0)
+    wave = static * (1.0 - np.abs(1.0 - result.at / (period / 2.0))) * 2.0
+    moved = result.probes[0].displacement[:, 0, 0]
+    np.testing.assert_allclose(moved, wave, atol=2.0 * static / 13.0)
+    assert moved[:-1].mean() == pytest.approx(static, rel=2e-3)
+
+
+def test_an_amplitude_runs_over_the_time_of_its_step(tmp_path: Path) -> None:
+    """Slow against the first period, 1 / 12930: the end follows at rest."""
+    step = (
+        "*STEP\n*MODAL DYNAMIC\n.001, .02\n*MODAL DAMPING\n1, 6, .3\n*CLOAD, AMPLITUDE=SLOW\nFREE, 1, 2.\n"
+        "*NODE PRINT, NSET=FREE\nU\n*END STEP"
+    )
+    text = bar("ALL, 2, 3", "*AMPLITUDE, NAME=SLOW\n0., 0., .01, 1., .02, 0.", SHAKEN, step)
+    result = solution(tmp_path, text).responses[0]
+    static = 8.0 * LENGTH / (YOUNG * 16.0)
+    expected = static * (1.0 - np.abs(1.0 - result.at / 0.01))
+    np.testing.assert_allclose(result.probes[0].displacement[:, 0, 0], expected, atol=5e-3 * static)
+    assert result.damping[:6] == pytest.approx(0.3)
+
+
+@pytest.mark.parametrize(
+    "step",
+    [
+        "*STEADY STATE DYNAMICS, HARMONIC=NO\n1., 2.\n*CLOAD\nFREE, 1, 2.",
+        "*STEADY STATE DYNAMICS\n1., 2.",
+        "*STEADY STATE DYNAMICS\n1., 2.\n*CLOAD, AMPLITUDE=SLOW\nFREE, 1, 2.",
+        "*STEADY STATE DYNAMICS\n1., 2.\n*BOUNDARY\n1, 1, 1, 1.",
+        "*MODAL DYNAMIC\n.1, 1.\n*BOUNDARY\nHELD, 1, 1, 1.",
+        "*MODAL DYNAMIC\n.1, 1.\n*CLOAD, LOAD CASE=2\nFREE, 1, 2.",
+        "*MODAL DYNAMIC, STEADY STATE\n.1, 1.\n*CLOAD\nFREE, 1, 2.",
+    ],
+)
+def test_other_vibrations_are_refused(tmp_path: Path, step: str) -> None:
+    text = bar("ALL, 2, 3", "*AMPLITUDE, NAME=SLOW\n0., 0., 1., 1.", SHAKEN, f"*STEP\n{step}\n*END STEP")
+    with pytest.raises(InputError):
+        solution(tmp_path, text)
+
+
+def test_modes_before_and_after_a_load_are_both_found(tmp_path: Path) -> None:
+    """Unloaded those of the bar; stretched by 1 % under NLGEOM those of a longer and stiffer one: at nu = 0, a logarithmic
+    or any other law near, within a few per cent of each other, but not the same."""
+    pull = "*STEP, NLGEOM\n*STATIC\n*CLOAD\nFREE, 1, 8400.\n*END STEP"
+    both = bar("ALL, 2, 3", FREQUENCY, pull, FREQUENCY.replace("*STEP", "*STEP, PERTURBATION"))
+    before, after = solution(tmp_path, both).modes
+    alone = solution(tmp_path, bar("ALL, 2, 3", FREQUENCY)).modes[0]
+    loaded = solution(tmp_path, bar("ALL, 2, 3", pull, FREQUENCY.replace("*STEP", "*STEP, PERTURBATION"))).modes[0]
+    np.testing.assert_allclose(before.values, alone.values, rtol=1e-8)
+    np.testing.assert_allclose(after.values, loaded.values, rtol=1e-8)
+    assert abs(after.values[0] / before.values[0] - 1.0) > 1e-4

@@ -52,6 +52,10 @@ def within(name: str) -> Callable[[Any], object]:
     return lambda record: replace(MODEL, **{name: [*getattr(MODEL, name), record]})
 
 
+def beside_frequencies(record: object) -> object:
+    return replace(MODEL, modes=[abut.Frequencies(1), record])
+
+
 def kept(record: object) -> object:
     return record
 
@@ -100,6 +104,8 @@ VALID: dict[str, tuple[dict[str, Any], Callable[[Any], object]]] = {  # argument
     "Solid": ({"body": "a", "material": STEEL}, kept),
     "Frequencies": ({"count": 1}, within("modes")),
     "Buckling": ({"count": 1}, within("modes")),
+    "Harmonic": ({"between": (1.0, 2.0), "loads": [abut.Force("b.right", (1.0, 0.0))], "damping": 0.1}, beside_frequencies),
+    "Transient": ({"period": 1.0, "loads": [abut.Force("b.right", (1.0, 0.0))]}, beside_frequencies),
     "SolveOptions": ({}, lambda solve: replace(MODEL, solve=solve)),
     "Spring": ({"name": "s", "on": "b.right", "x": 1.0}, within("springs")),
     "Sector": (

@@ -1,24 +1,29 @@
-"""Frequencies and buckling loads about the state that a run ends with."""
+"""Frequencies, buckling loads and vibrations about the states that load steps end with."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from abut.bodies.stress_stiffness import stress_stiffness
 from abut.errors import InputError, nearest
-from abut.model import Buckling, Frequencies, Model
+from abut.model import Buckling, Frequencies, Harmonic, Model, Transient
+from abut.model.response import basis_of
 from abut.modes.buckling import buckling
 from abut.modes.complex_frequencies import complex_frequencies
 from abut.modes.cyclic import cyclic_frequencies, sides
 from abut.modes.frequencies import densities, frequencies
 from abut.modes.held import Held, held
+from abut.modes.response import respond
 from abut.modes.sliding import sliding
 from abut.modes.spinning import spin_softening
 from abut.nonlinear.attempt import Attempt
+from abut.probing import Place
 from abut.problem.assembly import Assembled
+from abut.problem.constraints import Constraints
+from abut.problem.linearised import Linearised
 from abut.problem.problem import ContactProblem
-from abut.solution import ModesResult
+from abut.solution import ModesResult, ResponseResult
 from abut.solution.state import State
 from abut.types import Sparse
 
@@ -49,42 +54,82 @@ def check_modes(model: Model, team: bool) -> None:
         )
 
 
-def modes(assembled: Assembled, before: State, attempt: Attempt) -> tuple[ModesResult, ...]:
-    """All that the model asks for. before: the state that the last attempt, which converged, began with.
+@dataclass(frozen=True)
+class Reached:
+    """A converged state as vibrations see it. before, state: at the begin and the end of its step; problem, system: there;
+    near: the linear change of variables; there: stiffness and contact; stressed: stiffness that stresses add, (dim n_points,
+    dim n_points), None where the tangent has it; spins: of rotation."""
+
+    problem: ContactProblem
+    before: State
+    state: State
+    system: Linearised
+    near: Constraints
+    there: Held
+    stressed: Sparse | None
+    spins: Sparse
+
+    @classmethod
+    def of(cls, assembled: Assembled, before: State, attempt: Attempt) -> Reached:
+        """before: the state that the attempt, which converged, began with."""
+        state, problem = attempt.state, assembled.problem
+        own = problem.with_ordinary(attempt.inside) if attempt.inside.any() else problem
+        system = own.again(before, state)
+        near = problem.constraints.near(state.unknowns, system.factors)
+        stressed = _stressed(assembled, state) if problem.model.small_strains else None
+        spins = spin_softening(problem.model, state.time)
+        return cls(own, before, state, system, near, held(own, system, state), stressed, spins)
+
+    def added(self, wanted: Frequencies) -> Sparse | None:
+        """What the state adds to the stiffness of a linear body, or to the tangent of one at large displacements."""
+        if self.stressed is None:
+            return self.spins
+        return (self.stressed + self.spins).tocsr() if wanted.stiffening else None
+
+    def tight(self, wanted: Frequencies) -> Held:
+        """Stiffness and contact that these modes have."""
+        more = self.added(wanted)
+        return self.there if more is None else _stiffened(self.there, self.near.reduce(more))
+
+
+def modes(
+    assembled: Assembled, ends: Mapping[float, tuple[State, Attempt]], places: Sequence[Place]
+) -> tuple[tuple[ModesResult, ...], tuple[ResponseResult, ...]]:
+    """All that the model asks for, at the times of ``ends``: the state that the attempt, which converged, began with, and
+    that. places: of probes.
 
     Raises InputError, ConvergenceError and SingularModelError."""
-    state, problem = attempt.state, assembled.problem
-    if not problem.model.modes:
-        return ()
-    own = problem.with_ordinary(attempt.inside) if attempt.inside.any() else problem
-    system = own.again(before, state)
-    near = problem.constraints.near(state.unknowns, system.factors)
-    there = held(own, system, state)
-    stressed = _stressed(assembled, state) if problem.model.small_strains else None
-    spins = spin_softening(problem.model, state.time)
+    model = assembled.problem.model
+    there = {time: Reached.of(assembled, *end) for time, end in ends.items()}
+    found: list[tuple[Frequencies | Buckling, ModesResult]] = []
+    for wanted in model.modes:
+        if isinstance(wanted, (Frequencies, Buckling)) and wanted.time in there:
+            found += [(wanted, result) for result in _found(there[wanted.time], wanted)]
+    answers = []
+    for wanted in model.modes:
+        if isinstance(wanted, (Harmonic, Transient)) and wanted.time in there:
+            made_of, result = next((w, r) for w, r in found if basis_of(w, wanted) and not r.diameter)
+            assert isinstance(made_of, Frequencies)
+            at = there[wanted.time]
+            answers.append(respond(model, at.near, at.tight(made_of), result, places, wanted))
+    return tuple(result for _, result in found), tuple(answers)
 
-    def added(wanted: Frequencies) -> Sparse | None:
-        """What the state adds to the stiffness of a linear body, or to the tangent of one at large displacements."""
-        if stressed is None:
-            return spins
-        return (stressed + spins).tocsr() if wanted.stiffening else None
 
-    def found(wanted: Frequencies | Buckling) -> tuple[ModesResult, ...]:
-        if isinstance(wanted, Buckling):
-            assert stressed is not None  # as checked at the outset
-            return (buckling(problem.model, near, there, stressed, wanted),)
-        around = tuple(diameter for diameter in wanted.diameters if diameter)
-        alike = (one(wanted),) if len(around) < len(wanted.diameters) else ()
-        return alike + (_around(own, before, state, added(wanted), wanted, around) if around else ())
+def _found(at: Reached, wanted: Frequencies | Buckling) -> tuple[ModesResult, ...]:
+    if isinstance(wanted, Buckling):
+        assert at.stressed is not None  # as checked at the outset
+        return (buckling(at.problem.model, at.near, at.there, at.stressed, wanted),)
+    around = tuple(diameter for diameter in wanted.diameters if diameter)
+    alike = (_one(at, wanted),) if len(around) < len(wanted.diameters) else ()
+    return alike + (_around(at.problem, at.before, at.state, at.added(wanted), wanted, around) if around else ())
 
-    def one(wanted: Frequencies) -> ModesResult:
-        more = added(wanted)
-        tight = there if more is None else _stiffened(there, near.reduce(more))
-        if wanted.complex:
-            return complex_frequencies(problem.model, near, tight, sliding(system, state, there), wanted)
-        return frequencies(problem.model, near, tight, wanted)
 
-    return tuple(result for wanted in problem.model.modes for result in found(wanted))
+def _one(at: Reached, wanted: Frequencies) -> ModesResult:
+    tight = at.tight(wanted)
+    if wanted.complex:
+        slides = sliding(at.system, at.state, at.there)
+        return complex_frequencies(at.problem.model, at.near, tight, slides, wanted)
+    return frequencies(at.problem.model, at.near, tight, wanted)
 
 
 def _around(

@@ -23,6 +23,7 @@ from abut.model import Model
 from abut.model.conditions import weights
 from abut.model.offset import offsets
 from abut.model.side_choice import choices
+from abut.model.step_ends import SAME
 from abut.nonlinear.again import Again
 from abut.nonlinear.attempt import Attempt
 from abut.nonlinear.large_steps import LargeSteps
@@ -38,7 +39,7 @@ from abut.problem.onset import Most, Onset, onset
 from abut.problem.restraint import require_balance
 from abut.problem.stabilising import is_dragged
 from abut.problem.step_error import landed_in
-from abut.solution import Iteration, ModesResult, Observer, OnStep, Phase, Saved, Solution, Step
+from abut.solution import Iteration, ModesResult, Observer, OnStep, Phase, ResponseResult, Saved, Solution, Step
 from abut.solution.flow import GO_ON
 from abut.solution.run_checks import JUMPED
 from abut.solution.state import State
@@ -78,7 +79,9 @@ class Run:
     acted: Acted = None  # what acted at the end of the last step, with friction or finite kinematics
     parts: list[tuple[Attempt, Step]] = field(default_factory=list)  # of the step that is being solved
     ended: tuple[State, Attempt] | None = None  # the last one that converged, and where it began
+    looked: dict[float, tuple[State, Attempt]] = field(default_factory=dict)  # the same, where modes are asked for
     modes: tuple[ModesResult, ...] = ()
+    responses: tuple[ResponseResult, ...] = ()
     again: Callable[[], Again] | None = None  # what solves steps again, once there is something that solves them
 
     @classmethod
@@ -191,11 +194,11 @@ class Run:
             self.told.note(self.solver.effort)
 
     def vibrate(self) -> None:
-        """What the model asks for about the state at the end, if that is there."""
-        if self.ended is None or not self.model.modes or not all(step.converged for step in self.steps):
+        """What the model asks for about the states at ends of steps, if all are there."""
+        if not self.looked or not all(step.converged for step in self.steps):
             return
         self.told.observe(Phase("frequencies and buckling"))
-        self.modes = modes(self.assembled, *self.ended)
+        self.modes, self.responses = modes(self.assembled, self.looked, self.places)
         self.clock.mark("modes")
 
     def _onset(self, earlier: State | None, before: State, now: State) -> Onset:
@@ -236,7 +239,7 @@ class Run:
         n_free, timings = self.assembled.problem.n_free, dict(self.clock.timings)
         return Solution(
             self.model, tuple(self.steps), n_free, self.solver.name, tuple(self.told.notes), timings, complete,
-            modes=self.modes,
+            modes=self.modes, responses=self.responses,
         )  # fmt: skip
 
     def _result(self, attempt: Attempt, sized: bool = True) -> Step:
@@ -247,6 +250,8 @@ class Run:
         if attempt.converged:
             began = self.assembled.problem.start() if self.ended is None else self.ended[1].state
             self.ended = began, replace(attempt, balance=None)
+            at = [wanted.time for wanted in self.model.modes if abs(wanted.time - attempt.time) <= SAME]
+            self.looked |= dict.fromkeys(at, self.ended)
         return replace(step, probes=tuple(read(place, step) for place in self.places))
 
     def _mended(self, attempt: Attempt) -> Mended | None:

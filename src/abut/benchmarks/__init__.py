@@ -40,6 +40,7 @@ from abut.benchmarks import (
     punches,
     removals,
     residual_stress,
+    response,
     sector_fit,
     stability,
     started,
@@ -91,6 +92,7 @@ BENCHMARKS: dict[str, Benchmark] = {
         *joined.BENCHMARKS,
         *connectors.BENCHMARKS,
         *modes.BENCHMARKS,
+        *response.BENCHMARKS,
         *mapped.BENCHMARKS,
         *penetration.BENCHMARKS,
     )

@@ -14,7 +14,7 @@ YOUNG, DENSITY, LENGTH, HEIGHT = 210e3, 7.85e-9, 100.0, 2.0  # N, mm, t; a width
 PUSH = 10.0
 
 
-def _bars(level: int) -> Model:
+def pressed_bars(level: int) -> Model:
     """Two bars in a row, pressed on each other by a force: closed contact vibrates as if they were one."""
     n = 2**level
     parts = {
@@ -59,7 +59,7 @@ EULER = np.pi**2 * YOUNG * HEIGHT**3 / 12.0 / (4.0 * LENGTH**2)
 SHEAR = 1.0 + 1.2 * EULER / (YOUNG / 2.0 * HEIGHT)  # nu = 0: G = E / 2
 BENCHMARKS = (
     Benchmark(
-        "bars-ring", "two bars pressed on each other: natural frequencies along them", _bars, _frequencies,
+        "bars-ring", "two bars pressed on each other: natural frequencies along them", pressed_bars, _frequencies,
         {
             f"frequency {i + 1}": Reference(
                 (2 * i + 1) * WAVE / (4.0 * LENGTH), 2e-5, "bar held at one end: (2 n - 1) c / 4 L",

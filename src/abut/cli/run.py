@@ -293,6 +293,7 @@ def _print_result(solution: Solution, directory: Path) -> None:
     from abut.diagnosis.cures import cure
     from abut.report.contact_words import force, lines
     from abut.report.modes import mode_lines
+    from abut.report.responses import response_lines
     from abut.solution.load_factor import factor_line, load_factors
 
     if not (solution.converged and solution.complete):
@@ -313,6 +314,8 @@ def _print_result(solution: Solution, directory: Path) -> None:
     for modes in solution.modes:
         for line in mode_lines(modes):
             show(line)
+    for line in response_lines(solution):
+        show(line)
     show("certificate   value      limit")
     for check in solution.certificate:
         name = f"{check.contact}: {check.name}" if check.contact else check.name

@@ -8,6 +8,7 @@ from abut.decks.large import is_finite
 from abut.io.deck.groups import Groups
 from abut.io.deck.record import Block, Deck
 from abut.io.deck.sectors import turned_side
+from abut.io.deck.time_histories import ends
 from abut.model import Buckling, Frequencies
 
 
@@ -18,10 +19,10 @@ def modes(deck: Deck, groups: Groups) -> tuple[Frequencies | Buckling, ...]:
     if deck.modes.kind == "BUCKLE":
         return (Buckling(deck.modes.count),)
     wanted = Frequencies(deck.modes.count, stiffening=deck.modes.loaded)
-    if not any(deck.modes.diameters):
-        return (wanted,)
-    side = groups.node_set(turned_side(deck, groups), "sector-side")
-    return (replace(wanted, diameters=deck.modes.diameters, sectors=deck.cyclic[0].sectors, side=side),)
+    if any(deck.modes.diameters):
+        side = groups.node_set(turned_side(deck, groups), "sector-side")
+        wanted = replace(wanted, diameters=deck.modes.diameters, sectors=deck.cyclic[0].sectors, side=side)
+    return (replace(wanted, time=ends(deck)[0]), wanted) if deck.modes.unloaded else (wanted,)
 
 
 def loading_notes(deck: Deck) -> list[str]:

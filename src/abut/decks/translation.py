@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -30,6 +31,7 @@ from abut.decks.overclosure import overclosure_notes, own_laws, softened
 from abut.decks.passing import passing_notes, removals
 from abut.decks.plane import plane_of, thickness
 from abut.decks.plane_solids import plane_notes
+from abut.decks.response import responses, without_shaking
 from abut.decks.rigid import join, rigid_bodies, with_parts_coupled
 from abut.decks.rubber import of_rubber, rubber_notes
 from abut.decks.springs import spring_notes, springs
@@ -43,7 +45,7 @@ from abut.io.deck.groups import Groups, Piece, pieces
 from abut.io.deck.nodal_constraints import bonds
 from abut.io.deck.pretension import cut
 from abut.io.deck.reasons import DeckError, Reasons
-from abut.io.deck.record import Deck, GeneralContact, Numbers, Pair
+from abut.io.deck.record import Deck, GeneralContact, Numbers, Pair, Step
 from abut.io.deck.ties import near, tie_notes
 from abut.io.deck.time_histories import Course, courses, period, times, zero
 from abut.materials.material import Material
@@ -51,12 +53,10 @@ from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
 from abut.mesh.read import build
 from abut.model import (
-    Buckling,
     Connector,
     Contact,
     Coupling,
     Equation,
-    Frequencies,
     Hold,
     Load,
     Model,
@@ -67,6 +67,7 @@ from abut.model import (
     Spring,
     Support,
 )
+from abut.model.response import Wanted
 from abut.output.options import Output
 
 AXES = "xyz"
@@ -107,6 +108,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
         reasons.add(error)
     plane = plane_of(deck)
     deck, notes = _made_solid(with_stiff_beams(deck), soft)
+    deck, alone, shaken = _parted(deck)
     made = pieces(deck)
     deck = with_ties_by_node(with_parts_coupled(deck, made, notes), notes)
     groups = Groups(deck)
@@ -124,14 +126,16 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     references = dict(zip([*moving, *(coupling.name for coupling in bound)], reference_nodes(deck)))
     modulus = max((solid.material.modulus for solid in solids), default=1.0)
     prescribed = _prescribed(deck, groups, parts, plane, references, modulus, notes, reasons)
-    asked, vibrations = tables(deck, groups, notes), _vibrations(deck, groups, reasons)
+    asked = tables(deck, groups, notes)
+    every_load = partial(_response_loads, groups=groups, parts=parts, plane=plane, references=references)
+    vibrations = _vibrations(
+        deck, groups, partial(responses, deck, alone, shaken, 2 if plane else 3, every_load), reasons
+    )
     reasons.tell()
     mesh = build(Mesh, groups.raw(), deck.path)
     notes += mesh.notes
     mesh, contacts = adjusted(mesh, deck, groups, contacts, notes)
-    check_mesh(mesh)
-    shells, beams = (tuple(n for n, piece in parts.items() if set(piece.codes) <= codes) for codes in (SHELLS, BEAMS))
-    mesh = replace(mesh, shells=shells, beams=beams)
+    mesh = _told_thin(mesh, parts)
     for contact, pair in zip(contacts, deck.pairs):
         with reasons.gathered():
             _check_sides(mesh, contact, pair)
@@ -144,20 +148,20 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     finite = is_finite(deck)
     notes += [] if finite else path_notes(contacts)
     model = Model(
-        mesh,
-        solids=solids,
-        contacts=contacts,
-        rigid=rigid,
-        couplings=held_by(deck, bound, prescribed.names),
+        mesh, solids=solids, contacts=contacts, rigid=rigid, couplings=held_by(deck, bound, prescribed.names), plane=plane,
         **{name: value for name, value in vars(prescribed).items() if name != "names"},
-        plane=plane,
-        kinematics="finite" if finite else "small",
-        modes=vibrations,
-        removals=tuple(removals(deck, parts)),
+        kinematics="finite" if finite else "small", modes=vibrations, removals=tuple(removals(deck, parts)),
         solve=replace(_steps(deck, finite), end=period(deck)),
-    )
+    )  # fmt: skip
     model, output = with_tables(model, deck, asked, notes), output_options(model, deck, notes)
     return Translation(model, tuple(notes), deck.ignored, laws, output)
+
+
+def _told_thin(mesh: Mesh, parts: Mapping[str, Piece]) -> Mesh:
+    """With the names of its shells and beams. Raises InputError for a mesh that is not sound."""
+    check_mesh(mesh)
+    shells, beams = (tuple(n for n, piece in parts.items() if set(piece.codes) <= codes) for codes in (SHELLS, BEAMS))
+    return replace(mesh, shells=shells, beams=beams)
 
 
 def _made_solid(deck: Deck, soft: bool) -> tuple[Deck, list[str]]:
@@ -170,10 +174,29 @@ def _made_solid(deck: Deck, soft: bool) -> tuple[Deck, list[str]]:
     return deck, [*notes, *passing_notes(deck), *rubber_notes(deck)]
 
 
-def _vibrations(deck: Deck, groups: Groups, reasons: Reasons) -> tuple[Frequencies | Buckling, ...]:
-    result: tuple[Frequencies | Buckling, ...] = ()
+def _parted(deck: Deck) -> tuple[Deck, tuple[Deck, ...], tuple[Step, ...]]:
+    """Without steps that shake, those with their loads alone, and these steps."""
+    still, alone = without_shaking(deck)
+    return still, alone, deck.steps[len(still.steps) :]
+
+
+def _response_loads(
+    deck: Deck, groups: Groups, parts: dict[str, Piece], plane: str | None, references: dict[str, tuple[int, int]]
+) -> list[Load]:
+    """All loads of a deck."""
+    thick = thickness(deck, plane, [])
+    bound = bonds(deck, groups, plane)
+    at_nodes = [*forces(bound, groups, plane, thick), *reference_loads(deck, references, plane, thick)]
+    return [*at_nodes, *_pressures(deck, groups), *body_loads(deck, parts, plane)]
+
+
+def _vibrations(
+    deck: Deck, groups: Groups, shaken: Callable[[], Sequence[Wanted]], reasons: Reasons
+) -> tuple[Wanted, ...]:
+    """Modes, and what is made of them."""
+    result: tuple[Wanted, ...] = ()
     with reasons.gathered():
-        result = modes(deck, groups)
+        result = (*modes(deck, groups), *shaken())
     return result
 
 

@@ -37,6 +37,8 @@ def cure(check: Check, solution: Solution) -> str:
         return few
     if check.name.partition(":")[0] in (FREQUENCIES, BUCKLING):
         return OF_MODES[check.name.partition(": ")[2]]
+    if check.name.endswith("response: modes left out"):
+        return "ask for more modes (frequencies.count), up to about twice the highest frequency that shakes"
     if check.name == "locking":
         return "; ".join(one.cure for one in locking(solution.model))
     if not check.contact:

@@ -26,18 +26,20 @@ from abut.model import (
     Buckling,
     Contact,
     Frequencies,
+    Harmonic,
     Integration,
     Load,
     Model,
     SolveOptions,
+    Transient,
 )
 from abut.model.removal import as_given
+from abut.model.response import Wanted
 from abut.output.options import EVERYTHING, Output
 from abut.types import Json
 
 LOAD_KINDS = {record: kind for kind, record in LOADS.items()}
-
-
+MODES = {"frequencies": Frequencies, "buckling": Buckling, "harmonic": Harmonic, "transient": Transient}
 MATERIAL_KINDS = {record: kind for kind, record in MATERIALS.items()}
 
 
@@ -95,14 +97,14 @@ def job_table(model: Model, mesh: str, output: Output = EVERYTHING) -> Json:
         records = [of(record) for record in getattr(model, name)]
         if records:
             table[name] = records
-    for name, kind in (("frequencies", Frequencies), ("buckling", Buckling)):
+    for name, kind in MODES.items():
         wanted = [item for item in model.modes if isinstance(item, kind)]
         if len(wanted) > 1:
             raise InputError(
                 f"a job file holds one table [{name}], and the model asks for {len(wanted)}; keep one of them"
             )
         if wanted:
-            table[name] = {"count": wanted[0].count, **_plain(wanted[0])}  # a table without keys would not be written
+            table[name] = _of_modes(wanted[0])
     options = _plain(model.solve)
     if options:
         table["solve"] = options
@@ -120,6 +122,13 @@ def material_table(material: Material) -> Json:
 def _parts(material: Material) -> Sequence[Material]:
     """Materials that one is made of."""
     return material.materials if isinstance(material, OverTemperature) else ()
+
+
+def _of_modes(wanted: Wanted) -> Json:
+    """A table with a key at least: one without would not be written."""
+    given = {"count": wanted.count} if isinstance(wanted, (Frequencies, Buckling)) else {}
+    loads = {name: getattr(wanted, name) for name in ("loads", "imaginary") if getattr(wanted, name, ())}
+    return {**given, **_plain(wanted), **{name: [_load(load) for load in each] for name, each in loads.items()}}
 
 
 def _load(load: Load) -> Json:

@@ -36,6 +36,7 @@ from abut.model import (
     Coupling,
     Equation,
     Frequencies,
+    Harmonic,
     Hold,
     Load,
     Model,
@@ -50,8 +51,10 @@ from abut.model import (
     Spring,
     Support,
     Term,
+    Transient,
 )
 from abut.model.conditions import TURNS
+from abut.model.response import Response
 from abut.model.sector import Sector, add_sectors
 from abut.model.stop import Stop, add_stops
 from abut.output.options import Output
@@ -218,9 +221,19 @@ def _model(file: JobFile, folder: Path, refine: int, named: Named) -> tuple[Mode
         modes=[
             *([] if file.frequencies is None else [Frequencies(**file.frequencies.model_dump())]),
             *([] if file.buckling is None else [Buckling(**file.buckling.model_dump())]),
+            *([] if file.harmonic is None else [_response(Harmonic, file.harmonic, "harmonic", named)]),
+            *([] if file.transient is None else [_response(Transient, file.transient, "transient", named)]),
         ],
     )
     return model, resolved
+
+
+def _response(kind: Callable[..., Response], table: Any, where: str, named: Named) -> Response:
+    given = table.model_dump()
+    for name in ("loads", "imaginary"):
+        if name in given:
+            given[name] = [_load(load, f"{where}.{name}[{i}]", named) for i, load in enumerate(getattr(table, name))]
+    return kind(**given)
 
 
 def _equation(table: EquationTable, where: str) -> Equation:
@@ -328,8 +341,10 @@ def _explain(error: Json, data: Json) -> str:
 def _location(given: Sequence[Any]) -> list[Any]:
     """Keys and numbers of entries as they stand in the file: without the kind of a load or a material, after its number or
     name, and without the alternatives that a value may be one of."""
-    tagged = given[0] in ("loads", "materials") and len(given) > 2 and given[2] in (*LOADS, *MATERIALS)
-    keys = [*given[:2], *given[3:]] if tagged else list(given)
+    nested = 1 if given[0] in ("harmonic", "transient") else 0
+    tagged = given[nested] in ("loads", "imaginary", "materials") if len(given) > nested + 2 else False
+    at = nested + 2
+    keys = [*given[:at], *given[at + 1 :]] if tagged and given[at] in (*LOADS, *MATERIALS) else list(given)
     return [part for part in keys if part not in CHOICES and not str(part).startswith(ALTERNATIVES)]
 
 
@@ -347,7 +362,8 @@ def _fields(model: Any, location: list[Any]) -> list[str]:
     node: Any = schema
 
     def resolve(item: Any) -> Any:
-        while "$ref" in item:
+        while "$ref" in item or "$ref" in item.get("anyOf", [{}])[0]:  # anyOf: a table that may be left out
+            item = item if "$ref" in item else item["anyOf"][0]
             item = schema["$defs"][item["$ref"].rsplit("/", 1)[1]]
         return item
 

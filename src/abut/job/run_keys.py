@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+AT = "of the loaded state: the end of a step, or a time at which a load step then ends; left out: the end of the last step"
+
 RUN: dict[str, dict[str, str]] = {
     "FrequenciesTable": {
         "count": "how many, from the lowest",
@@ -13,8 +15,31 @@ RUN: dict[str, dict[str, str]] = {
         "sectors": "how many sectors like the modelled one make up the whole turn, where there are other diameters than 0",
         "side": "the node set on one side of the sector whose equations join it to the other side, turned by one sector; "
         "all equations between it and other nodes are taken as such",
+        "time": AT,
     },
-    "BucklingTable": {"count": "how many positive factors, from the smallest"},
+    "BucklingTable": {"count": "how many positive factors, from the smallest", "time": AT},
+    "HarmonicTable": {
+        "between": "first and last frequency, cycles per time",
+        "loads": "as [[loads]], their values amplitudes of cosines: no temperatures, no centrifugal forces, no amplitude",
+        "imaginary": "loads that go a quarter of a period ahead",
+        "base": "amplitude of a shift of everything that is held [length]",
+        "points": "frequencies from one natural frequency to the next, both among them",
+        "bias": "how much closer they are near natural frequencies; 1: not at all",
+        "damping": "share of critical damping, of all modes, or of the first, the second, ... and none of those beyond",
+        "rayleigh": "of mass [1/time] and of stiffness [time]: half of the first over, and half of the second times, the "
+        "angular frequency are added to the shares",
+        "fields": "frequencies of which displacements everywhere are written",
+        "time": AT,
+    },
+    "TransientTable": {
+        "period": "how long [time]",
+        "loads": "as [[loads]]; amplitudes are factors over times from 0 to period, what has none acts from the outset",
+        "steps": "in how many equal steps results are given; modes move exactly in between",
+        "damping": "as of [harmonic]",
+        "rayleigh": "as of [harmonic]",
+        "fields": "times of which displacements everywhere are written",
+        "time": AT,
+    },
     "SolveOptionsTable": {
         "steps": "load steps, equal parts of a linear ramp; auto: one, with friction as many as the onset of slip takes. "
         "With friction, a step that does not converge is taken in parts, of which only the end is written. With contact "

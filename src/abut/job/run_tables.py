@@ -7,14 +7,21 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from abut.job.derived import table_of
-from abut.job.table import OneOf, Positive, Table, Time
+from abut.job.load_tables import LOAD
+from abut.job.table import Number, OneOf, Positive, Table, Time
 from abut.model.modes import Buckling, Frequencies
+from abut.model.response import Harmonic, Transient
 from abut.model.solve_options import LINEAR, SolveOptions
 from abut.model.step_choice import WORDS as STEPS
 from abut.output.options import COMPRESSIONS, FAST, FIELDS, FORMATS, USUAL, VTU
 
-FREQUENCIES = table_of(Frequencies, {"diameters": list[int]})
-BUCKLING = table_of(Buckling)
+FREQUENCIES = table_of(Frequencies, {"diameters": list[int], "time": Time})
+BUCKLING = table_of(Buckling, {"time": Time})
+LOADS = list[Annotated[Table, LOAD]]
+NUMBERS = list[Number]
+VIBRATING = {"damping": Number | NUMBERS, "rayleigh": NUMBERS, "fields": NUMBERS, "time": Time, "loads": LOADS}
+HARMONIC = table_of(Harmonic, {**VIBRATING, "between": NUMBERS, "base": NUMBERS | None, "imaginary": LOADS})
+TRANSIENT = table_of(Transient, VIBRATING)
 SOLVE = table_of(
     SolveOptions,
     {"steps": int | Literal["auto"], "linear": Annotated[str, OneOf(LINEAR)], "times": list[Time] | None},

@@ -11,7 +11,17 @@ from abut.job.derived import Of, table_of
 from abut.job.key_descriptions import describe
 from abut.job.load_tables import LOAD
 from abut.job.material_tables import MATERIAL, AxesTable
-from abut.job.run_tables import BUCKLING, FREQUENCIES, SOLVE, OutputTable, ResultFieldTable, StartTable, StepTable
+from abut.job.run_tables import (
+    BUCKLING,
+    FREQUENCIES,
+    HARMONIC,
+    SOLVE,
+    TRANSIENT,
+    OutputTable,
+    ResultFieldTable,
+    StartTable,
+    StepTable,
+)
 from abut.job.table import Number, OneOf, Points, Table, Time, Varying
 from abut.model import Connector, Hold, Penetration, Preload, Removal, Rotation, Spring
 from abut.model.connector import KINDS as CONNECTORS
@@ -272,6 +282,8 @@ class JobFile(Table):
     start: StartTable | None = None
     frequencies: Annotated[Table, Of(FREQUENCIES)] | None = None
     buckling: Annotated[Table, Of(BUCKLING)] | None = None
+    harmonic: Annotated[Table, Of(HARMONIC)] | None = None
+    transient: Annotated[Table, Of(TRANSIENT)] | None = None
     solve: Annotated[Table, Of(SOLVE)] = SOLVE()
     output: OutputTable = OutputTable()
 

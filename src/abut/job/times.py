@@ -11,6 +11,8 @@ from abut.types import Json
 SINGLE = ("lock", "since", "reached", "until", "released")
 PAIRS = ("amplitude", "friction_amplitude")
 NAMED_PAIRS = "amplitudes"
+TRANSIENT = "transient"  # whose loads have a time of their own
+VIBRATING = ("frequencies", "buckling", "harmonic", TRANSIENT)
 LIST = "times"
 START = "start"
 Change = Callable[[Any], Any]
@@ -20,6 +22,7 @@ def with_shares(data: Json) -> Json:
     """Tables of a job with all times as shares of the end: that of ``solve``, or of all ``steps`` together, names of which
     stand for their ends. What is no time stays, and is told later. Raises InputError for a name that no step has, or that
     several have."""
+    data = _transient(data, lambda time, period: time / period)
     steps, solve = data.get("steps"), data.get("solve", {})
     if not isinstance(solve, Mapping) or (steps and not _sound(steps)):
         return data
@@ -35,7 +38,7 @@ def with_shares(data: Json) -> Json:
     end = last if steps else solve.get("end", 1.0)
     if not _is_number(end) or not end > 0.0 or (end == 1.0 and not steps):
         return data
-    result: Json = _with_times(data, lambda time: _share(time, end, named if steps else {}))
+    result: Json = _of_job(data, lambda time: _share(time, end, named if steps else {}))
     if isinstance(start := data.get("start"), Mapping) and "time" in start:
         result["start"] = {**start, "time": _share(start["time"], end, named if steps else {})}
     if steps:
@@ -49,8 +52,28 @@ def with_shares(data: Json) -> Json:
 
 def with_times(data: Json, end: float) -> Json:
     """The other way round: shares of ``end`` as times."""
-    result: Json = data if end == 1.0 else _with_times(data, lambda share: share * end if _is_number(share) else share)
+    if end != 1.0:
+        data = _of_job(data, lambda share: share * end if _is_number(share) else share)
+    return _transient(data, lambda share, period: share * period)
+
+
+def _of_job(data: Json, of: Change) -> Json:
+    """With all times, but those of the loads of what is transient, put through a function."""
+    result: Json = {key: value if key == TRANSIENT else _with_times(value, of) for key, value in data.items()}
+    for name in VIBRATING:
+        if isinstance(table := result.get(name), Mapping) and "time" in table:
+            result[name] = {**table, "time": of(table["time"])}
     return result
+
+
+def _transient(data: Json, of: Callable[[float, float], float]) -> Json:
+    """With the times of the loads of what is transient put through a function, which has the period, too."""
+    table = data.get(TRANSIENT)
+    period: Any = table.get("period") if isinstance(table, Mapping) else None
+    if not isinstance(table, Mapping) or not _is_number(period) or not period > 0.0:
+        return data
+    loads = _with_times(table.get("loads", []), lambda time: of(time, period) if _is_number(time) else time)
+    return {**data, TRANSIENT: {**table, "loads": loads}}
 
 
 def _sound(steps: Any) -> bool:

@@ -14,6 +14,7 @@ from abut.model.penetration import Penetration
 from abut.model.preload import Preload
 from abut.model.probe import Probe
 from abut.model.removal import Removal
+from abut.model.response import Harmonic, Transient
 from abut.model.rotation import Rotation
 from abut.model.solid import Solid
 from abut.model.solve_options import SolveOptions
@@ -21,7 +22,7 @@ from abut.model.spring import Spring
 
 __all__ = [
     "LAWS", "METHODS", "PLANES", "PRESSURES", "RULES", "Amplitude", "Axes", "BodyForce", "Buckling", "Centrifugal",
-    "Connector", "Contact", "Coupling", "Equation", "Force", "Frequencies", "Gravity", "History", "Hold", "Integration",
-    "Load", "Model", "Moment", "NodalForce", "Penetration", "Preload", "Pressure", "Probe", "Removal", "Rigid",
-    "Rotation", "Solid", "SolveOptions", "Spring", "Support", "Temperature", "Term", "Traction",
+    "Connector", "Contact", "Coupling", "Equation", "Force", "Frequencies", "Gravity", "Harmonic", "History", "Hold",
+    "Integration", "Load", "Model", "Moment", "NodalForce", "Penetration", "Preload", "Pressure", "Probe", "Removal",
+    "Rigid", "Rotation", "Solid", "SolveOptions", "Spring", "Support", "Temperature", "Term", "Traction", "Transient",
 ]  # fmt: skip

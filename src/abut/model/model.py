@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import chain
-from typing import get_args
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,13 +41,13 @@ from abut.model.coupling import Coupling, check_couplings, moving_points
 from abut.model.hold import Hold, check_holds
 from abut.model.integrations import Integrations
 from abut.model.kinematics import check_finite, check_kinematics
-from abut.model.modes import Buckling, Frequencies
 from abut.model.penetration import Penetration, check_penetrations
 from abut.model.physics import TEMPERATURE, Physics, dofs_of
 from abut.model.preload import Preload, cut_sections
 from abut.model.prescribed import largest_prescribed
 from abut.model.probe import Probe, check_probes
 from abut.model.removal import Away, Removal, check_removals, loads_while_there, opened
+from abut.model.response import Wanted, check_responses
 from abut.model.rotation import Rotation, check_rotations
 from abut.model.side_choice import SAME, decided, held_points, measured
 from abut.model.solid import Solid
@@ -61,7 +61,7 @@ PLANES = ("strain", "stress", "axisymmetric")
 RECORDS: dict[str, tuple[type, ...]] = {  # what the lists of a model are of
     "solids": (Solid,), "supports": (Support,), "loads": get_args(Load), "contacts": (Contact,), "equations": (Equation,),
     "rigid": (Rigid,), "probes": (Probe,), "rotations": (Rotation,), "couplings": (Coupling,), "preloads": (Preload,),
-    "springs": (Spring,), "holds": (Hold,), "penetrations": (Penetration,), "modes": (Frequencies, Buckling),
+    "springs": (Spring,), "holds": (Hold,), "penetrations": (Penetration,), "modes": get_args(Wanted),
     "removals": (Removal,), "connectors": (Connector,),
 }  # fmt: skip
 
@@ -111,7 +111,7 @@ class Model:
     physics : sequence of abut.model.physics.Physics
         Terms of one's own in the balance, with rates if wanted; fields beside displacements, on one process. By direct
         solvers.
-    modes, removals, connectors : sequences of Frequencies and Buckling, of Removal, of Connector
+    modes, removals, connectors : sequences of Frequencies, Buckling, Harmonic and Transient, of Removal, of Connector
         What is found about the state at the end of the last step, on one process; bodies that go, and may come back;
         joints of rigid bodies and couplings.
 
@@ -157,7 +157,7 @@ class Model:
     holds: Sequence[Hold] = ()
     penetrations: Sequence[Penetration] = ()
     physics: Sequence[Physics] = ()
-    modes: Sequence[Frequencies | Buckling] = ()
+    modes: Sequence[Wanted] = ()
     removals: Sequence[Removal] = ()
     connectors: Sequence[Connector] = ()
 
@@ -176,6 +176,7 @@ class Model:
         self._check_solids()
         check_supports(self.mesh, self.supports)
         check_loads(self.mesh, self.loads, {body.body for body in self.rigid}, {c.name for c in self.couplings})
+        check_responses(self.mesh, self.modes, {body.body for body in self.rigid}, {c.name for c in self.couplings})
         self._check_contacts()
         check_springs(self.mesh, self.springs)
         object.__setattr__(self, "holds", check_holds(self.mesh, self.holds))
@@ -184,14 +185,13 @@ class Model:
         others = (*self.physics, *self.modes, *self.connectors)
         check_removals(self.mesh, self.removals, self.materials, self.preloads, others)
         object.__setattr__(self, "loads", loads_while_there(self.mesh, self.loads, self.removals, self.materials))
-        self.opened  # noqa: B018 - sides of contacts go as a whole
+        self.opened, self.dofs  # noqa: B018 - sides of contacts go as a whole, names are there once
         check_kinematics(self.kinematics, self.solids)
         moving = moving_points(self.mesh, self.rigid, self.couplings)
         check_rotations(self.mesh, self.rotations, self.supports, moving, self.kinematics)
         if self.finite:
             check_finite(self.mesh, self.contacts, self.equations, moving, self.supports)
         check_equations(self.mesh, self.equations)
-        self.dofs  # noqa: B018 - names are there once
         check_probes(self.probes, self.mesh, [contact.name for contact in self.contacts])
 
     @property
@@ -271,8 +271,8 @@ class Model:
 
     @property
     def locking(self) -> tuple[History, ...]:
-        """With a corner where a preload is locked, a hold or a body comes or goes: load steps end there."""
-        changing: tuple[Preload | Hold | Removal, ...] = (*self.preloads, *self.holds, *self.removals)
+        """With a corner where a preload is locked, a hold or a body comes or goes, modes are found: load steps end there."""
+        changing: tuple[Any, ...] = (*self.preloads, *self.holds, *self.removals, *self.modes)
         return tuple(chain.from_iterable(item.locking for item in changing))
 
     def sides(self, contact: Contact) -> Sides:

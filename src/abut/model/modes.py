@@ -1,4 +1,4 @@
-"""What is asked for about the state at the end of the last load step: frequencies and buckling loads."""
+"""What is asked for about the state at the end of a load step: frequencies and buckling loads."""
 
 from __future__ import annotations
 
@@ -7,13 +7,14 @@ from dataclasses import dataclass
 
 from abut import checks
 from abut.errors import InputError
+from abut.model.conditions import Amplitude, History
 
 MOST_MODES = 10_000
 
 
 @dataclass(frozen=True)
 class Frequencies:
-    """Natural frequencies of the assembly as it is loaded at the end of the last load step.
+    """Natural frequencies of the assembly as it is loaded at the end of a load step.
 
     Closed contact stays closed and what sticks sticks; what slips does so without friction along its surface, or with
     ``complex`` under friction that goes with the pressure; what is open stays open. Supports and whatever else is prescribed
@@ -38,6 +39,8 @@ class Frequencies:
     side : str
         The node set on one side of the sector whose equations say that it moves as the other side does, turned by one
         sector. Every equation between these nodes and others is taken to be one of those.
+    time : float
+        Of the state, in (0, 1], where a load step then ends.
 
     Raises
     ------
@@ -57,15 +60,22 @@ class Frequencies:
     diameters: Sequence[int] = (0,)
     sectors: float = 0.0
     side: str = ""
+    time: float = 1.0
 
     def __post_init__(self) -> None:
         _check_count(self.count, "frequencies")
+        check_time(self.time, "frequencies")
         for name, value in (("stiffening", self.stiffening), ("complex", self.complex)):
             if not isinstance(value, bool):
                 raise InputError(f"frequencies: {name}: expected true or false, got {value!r}")
         object.__setattr__(self, "diameters", checks.listed(self.diameters, "frequencies: diameters", "whole numbers"))
         if self.cyclic or self.sectors or self.side:
             self._check_cyclic()
+
+    @property
+    def locking(self) -> tuple[History, ...]:
+        """With a corner at its time, where a load step ends."""
+        return turn_at(self.time)
 
     @property
     def cyclic(self) -> bool:
@@ -97,6 +107,8 @@ class Buckling:
     ----------
     count : int
         How many positive factors, from the smallest.
+    time : float
+        As of ``Frequencies``.
 
     Raises
     ------
@@ -111,9 +123,27 @@ class Buckling:
     """
 
     count: int = 5
+    time: float = 1.0
 
     def __post_init__(self) -> None:
         _check_count(self.count, "buckling")
+        check_time(self.time, "buckling")
+
+    @property
+    def locking(self) -> tuple[History, ...]:
+        """With a corner at its time, where a load step ends."""
+        return turn_at(self.time)
+
+
+def check_time(time: object, name: str) -> None:
+    """Raise InputError for what is no time of a loaded state."""
+    if isinstance(time, bool) or not isinstance(time, (int, float)) or not 0.0 < time <= 1.0:
+        raise InputError(f"{name}: time: expected a time after the start, up to the end, got {time!r}")
+
+
+def turn_at(time: float) -> tuple[History, ...]:
+    """A history with a corner at a time before the end, none for the end."""
+    return (Amplitude(((0.0, 0.0), (time, 0.0), (1.0, 1.0))),) if time < 1.0 else ()
 
 
 def _check_count(count: object, name: str) -> None:

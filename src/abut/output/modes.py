@@ -114,12 +114,12 @@ def _shapes(solution: Solution) -> dict[str, NDArray[np.float64]]:
         for i, shape in enumerate(result.shapes):
             name = f"{SINGULAR[result.kind]}{around}{f'_{again + 1}' if again else ''}_{i + 1:04d}"
             largest = max(float(np.abs(shape).max(initial=0.0)), 1e-300)
-            arrays[name] = _spatial(shape / largest)
+            arrays[name] = spatial(shape / largest)
             if len(result.imaginary):  # the motion a quarter of a period before
-                arrays[f"{name}_imaginary"] = _spatial(result.imaginary[i] / largest)
+                arrays[f"{name}_imaginary"] = spatial(result.imaginary[i] / largest)
     return arrays
 
 
-def _spatial(shape: NDArray[np.float64]) -> NDArray[np.float64]:
+def spatial(shape: NDArray[np.float64]) -> NDArray[np.float64]:
     """Vectors (n, dim) in space, (n, 3)."""
     return np.pad(shape, ((0, 0), (0, 3 - shape.shape[1])))

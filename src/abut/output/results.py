@@ -19,7 +19,7 @@ from abut.io.atomic import write_text
 from abut.io.names import file_labels
 from abut.io.versions import versions
 from abut.io.vtu import write_vtu
-from abut.output import forces, frd, probes, thin
+from abut.output import forces, frd, modes, probes, responses, thin
 from abut.output.contact_rows import (
     OF_CONTACT,
     contact_summary,
@@ -34,7 +34,6 @@ from abut.output.contact_rows import (
 from abut.output.earlier import INDEX, OPTIONAL, remove_others
 from abut.output.fields import WriteFields, found_name, is_whole, write_fields
 from abut.output.lock import Lock
-from abut.output.modes import modes_summary, names, write_modes
 from abut.output.options import EVERYTHING, Output, single
 from abut.report import Origin, write_report
 from abut.solution import ConnectorResult, PenetrationResult, PreloadResult, Solution, Step
@@ -54,7 +53,8 @@ def write(
     """Write everything about a solution to a directory, which is created if needed.
 
     report.html, summary.json, history.csv, forces.csv, run.jsonl; fields.pvd with a VTU file a step; contact_NAME.pvd
-    likewise for each contact; probe_NAME.csv for each probe; modes.csv and modes.vtu where the model asks for modes;
+    likewise for each contact; probe_NAME.csv for each probe; modes.csv and modes.vtu where the model asks for modes,
+    harmonic.csv, transient.csv and response.vtu for responses;
     fields.frd where ``output`` asks for it; shells.pvd, and beams.pvd with beams.csv, where there are any.
 
     Parameters
@@ -127,8 +127,10 @@ def write_held(
     shown = [step for step in solution.steps if _wanted(solution, step, output, True)]
     if output.frd:
         frd.write(folder, solution, shown, output)
-    write_modes(folder, solution, output.bodies)
-    mine = [*names(solution, output.bodies), *([frd.FILE] if output.frd else [])]
+    modes.write_modes(folder, solution, output.bodies)
+    responses.write_responses(folder, solution, output.bodies)
+    own = [*modes.names(solution, output.bodies), *responses.names(solution, output.bodies)]
+    mine = [*own, *([frd.FILE] if output.frd else [])]
     index = [name for name in INDEX if name not in OPTIONAL or name in mine]
     remove_others(folder, len(solution.steps), [*index, *_files(solution, shown, output)])
     write_report(solution, folder / "report.html", origin or Origin(folder.absolute().name))
@@ -185,7 +187,8 @@ def summary(solution: Solution) -> Json:
         "solver": solution.solver,
         "processes": solution.processes,
         "steps": [{**_step_summary(step), "time": step.factor * solution.model.solve.end} for step in solution.steps],
-        **modes_summary(solution),
+        **modes.modes_summary(solution),
+        **responses.responses_summary(solution),
         **_load_factors(solution),
         "certificate": {
             "passed": all(check.passed for check in solution.certificate),

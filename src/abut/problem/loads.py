@@ -89,7 +89,7 @@ def applied_load(model: Model, following: bool = False) -> NDArray[np.float64]:
     total = np.zeros((model.mesh.points.size, len(histories)))
     for load in model.loads:
         if not isinstance(load, Temperature) and _follows(model, load) == following:
-            total[:, histories.index(load.amplitude)] += _forces(model, load)
+            total[:, histories.index(load.amplitude)] += force_of(model, load)
     return total if following else total + preload_forces(model)
 
 
@@ -132,7 +132,8 @@ def force_and_moment(model: Model, load: Load) -> tuple[NDArray[np.float64], NDA
     return np.array(load.value), np.zeros(turns)
 
 
-def _forces(model: Model, load: Load) -> NDArray[np.float64]:
+def force_of(model: Model, load: Load) -> NDArray[np.float64]:
+    """Nodal forces (dim n_points,) of one load that is no temperature, at its full value on undeformed bodies."""
     mesh = model.mesh
     if at_reference(model, load):
         return _at_points(model, load)
@@ -141,7 +142,7 @@ def _forces(model: Model, load: Load) -> NDArray[np.float64]:
     if isinstance(load, Traction):
         return traction_load(mesh.surface(load.on), load.along, f"traction on '{load.on}': value")
     if isinstance(load, Force) and load.bearing:
-        bore, where = mesh.surface(load.on), f"loads[{model.loads.index(load)}].bearing"
+        bore, where = mesh.surface(load.on), f"bearing force on '{load.on}'"
         return bearing_load(bore, np.array(load.value), at_ends(model, bore), where)
     if isinstance(load, Force):
         return force_load(mesh.surface(load.on), np.array(load.value))

@@ -29,7 +29,7 @@ _GROUPS = (
     ("Equations", "equations"),
     ("Contacts", "contacts"),
     ("Probes", "probes"),
-    ("Frequencies and buckling", "modes"),
+    ("Frequencies, buckling and response", "modes"),
 )
 _SUBJECT = ("on", "body", "name")  # the first of these that a record has stands in a column of its own
 

@@ -28,6 +28,7 @@ from abut.report.motion import paths
 from abut.report.origin import Origin, comparison, ellipse
 from abut.report.probes import charts, probe_table
 from abut.report.quantities import extremes, largest_by_body
+from abut.report.responses import response_charts, response_lines
 from abut.report.scene import scene
 from abut.report.still import still_page
 from abut.report.times import time_axis
@@ -49,7 +50,7 @@ def page(solution: Solution, origin: Origin, beside: Beside | None = None) -> st
         "convergence": _convergence(solution),
         "history": _history(solution),
         "lines": _lines(solution, origin),
-        "probes": _charts(charts(solution)),
+        "probes": _charts([*charts(solution), *response_charts(solution)]),
         "paths": _charts(paths(solution)),
         "beside": _charts(beside.charts if beside else ()),
     }
@@ -265,14 +266,13 @@ def _beside(beside: Beside) -> str:
 
 
 def _probes(solution: Solution) -> str:
-    """The section of the probes, empty without any; plots follow the table."""
-    table = probe_table(solution)
-    if table is None:
+    """The section of probes and responses, empty without any; plots follow the table."""
+    table, lines = probe_table(solution), response_lines(solution)
+    if table is None and not lines:
         return ""
-    return (
-        f"<section><h2>Probes</h2>{_table(table['head'], table['rows'], table['title'])}"
-        '<div class="plots" id="probes"></div></section>'
-    )
+    read = "" if table is None else _table(table["head"], table["rows"], table["title"])
+    text = read + "".join(f"<p>{escape(line)}</p>" for line in lines)
+    return f'<section><h2>{"Response" if lines else "Probes"}</h2>{text}<div class="plots" id="probes"></div></section>'
 
 
 def _trouble(solution: Solution) -> str:

@@ -9,10 +9,12 @@ from abut.solution.penetrations import PenetrationResult
 from abut.solution.preloads import PreloadResult
 from abut.solution.progress import Iteration, Observer, Phase
 from abut.solution.records import Flips, OnStep, ProbeResult, RigidResult, Saved, SavedPart, Solution, Step
+from abut.solution.responses import ResponseAt, ResponseResult
 from abut.solution.state import History, Largest, State
 
 __all__ = [
     "Check", "ConnectorResult", "ContactResult", "Energy", "Flips", "Flow", "FrictionResult", "History", "Iteration",
     "Largest", "ModesResult", "Observer", "OnStep", "PenetrationResult", "Phase", "PreloadResult", "PressureStatistics",
-    "ProbeResult", "Resultant", "RigidResult", "Saved", "SavedPart", "Solution", "State", "Step",
+    "ProbeResult", "ResponseAt", "ResponseResult", "Resultant", "RigidResult", "Saved", "SavedPart", "Solution", "State",
+    "Step",
 ]  # fmt: skip

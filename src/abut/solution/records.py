@@ -26,6 +26,7 @@ from abut.solution.modes import ModesResult
 from abut.solution.penetrations import PenetrationResult
 from abut.solution.preloads import PreloadResult, preload_checks, weak_checks
 from abut.solution.progress import Iteration
+from abut.solution.responses import ResponseResult
 from abut.solution.run_checks import run_checks
 from abut.solution.state import State
 from abut.solution.stress_error import StressError
@@ -255,7 +256,7 @@ class Solution:
         What a deck asked for and the user left out.
     processes : int
         How many solved it together.
-    modes : tuple of ModesResult
+    modes, responses : tuples of ModesResult, of ResponseResult
         What ``model.modes`` asks for, in its order; empty before the end of the run.
     """
 
@@ -269,6 +270,7 @@ class Solution:
     ignored: tuple[str, ...] = ()  # what a deck asked for and the user left out
     processes: int = 1
     modes: tuple[ModesResult, ...] = ()
+    responses: tuple[ResponseResult, ...] = ()
 
     def __repr__(self) -> str:
         """The state of the run, the last step and the certificate, in at most ten lines."""
@@ -311,13 +313,8 @@ class Solution:
         loaded = forces_act(self.model)
         most = max((step.energy.size for step in self.steps if step.energy is not None), default=0.0)
         for step in self.steps:
-            balance = Check(
-                "",
-                "model balance",
-                step.balance_error,
-                step.balance_limit,
-                "loads plus reactions, over the size of the forces",
-            )
+            balance = Check("", "model balance", step.balance_error, step.balance_limit,
+                            "loads plus reactions, over the size of the forces")  # fmt: skip
             strain = Check("", "strain", step.strain, STRAIN, "largest pressure over the stiffness of the two bodies")
             turn = Check("", "rotation", step.turn, TURN,
                          "largest turn of a body, radians, which this kinematics takes for small",
@@ -352,6 +349,7 @@ class Solution:
             *self._apart,
             *run_checks([(step.factor, step.landed, step.energy) for step in self.steps]),
             *(check for result in self.modes for check in result.certificate),
+            *(check for result in self.responses for check in result.certificate),
         )
 
     @property

@@ -6,6 +6,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 from abut.io.deck.cards import Card, as_float, key
+from abut.io.deck.response_cards import Shaking, parted
 
 PROCEDURES = ("FREQUENCY", "BUCKLE")
 CHANGES = (
@@ -28,13 +29,16 @@ NOT_LINEAR = ("CONTACTPAIR", "CONTACT", "PLASTIC", "HYPERELASTIC", "MODELCHANGE"
 class Modes:
     """What steps ask for beside statics. kind: "FREQUENCY" or "BUCKLE"; count: how many; loaded: about the state after the
     steps before, stresses included; note: what is done otherwise than the deck says, empty for nothing; diameters: nodal
-    ones, of each of which there are ``count``."""
+    ones, of each of which there are ``count``; shaking: steps at the end whose loads shake what vibrates so;
+    unloaded: at the end of the first step, too, which has no loads."""
 
     kind: str
     count: int
     loaded: bool
     note: str = ""
     diameters: tuple[int, ...] = (0,)
+    shaking: tuple[Shaking, ...] = ()
+    unloaded: bool = False
 
 
 def without_modes(cards: Sequence[Card], ignore: Collection[str] = ()) -> tuple[tuple[Card, ...], Modes | None]:
@@ -43,11 +47,26 @@ def without_modes(cards: Sequence[Card], ignore: Collection[str] = ()) -> tuple[
 
     As the only step, or in several of nodal diameters, it becomes a static one: unloaded for frequencies, with its loads for
     buckling. *FREQUENCY after static steps is about their state with PERTURBATION; without, about the unloaded model, which
-    has the same stiffness where nothing but stresses changes (``NOT_LINEAR``, and no NLGEOM)."""
+    has the same stiffness where nothing but stresses changes (``NOT_LINEAR``, and no NLGEOM). The first of two is about the
+    end of an unloaded first step. Steps at the end that shake what vibrates are kept as static ones, with their loads."""
     starts = [i for i, card in enumerate(cards) if card.key == "STEP"]
     if not starts:
         return tuple(cards), None
-    before, steps = list(cards[: starts[0]]), [list(cards[i:j]) for i, j in zip(starts, [*starts[1:], len(cards)])]
+    every = [list(cards[i:j]) for i, j in zip(starts, [*starts[1:], len(cards)])]
+    found = parted(every)
+    if found is None or not found[2]:
+        return _without(cards, list(cards[: starts[0]]), every, ignore)
+    steps, shaken, shaking = found
+    left, modes = _without(cards, list(cards[: starts[0]]), steps, ignore)
+    if modes is None or modes.kind != "FREQUENCY" or 0 not in modes.diameters:
+        return tuple(cards), None
+    return (*left, *(card for step in shaken for card in step)), replace(modes, shaking=shaking)
+
+
+def _without(
+    cards: Sequence[Card], before: list[Card], steps: list[list[Card]], ignore: Collection[str]
+) -> tuple[tuple[Card, ...], Modes | None]:
+    """``without_modes`` of cards before and in steps; all cards and None where abut finds no such modes."""
     asking = [step for step in steps if any(card.key in PROCEDURES for card in step)]
     wanted = [_wanted(step, before) for step in asking]
     left_out = {key(name.lstrip("*")) for name in ignore}
@@ -72,7 +91,20 @@ def without_modes(cards: Sequence[Card], ignore: Collection[str] = ()) -> tuple[
         linear = not any(card.key in NOT_LINEAR or card.has("NLGEOM") or card.has("NONLINEAR") for card in every)
         if not perturbed[0] and linear and not after & {"BOUNDARY"}:
             return every, modes
+    elif [steps[0], steps[-1]] == asking and perturbed == [False, True] and modes.kind == "FREQUENCY" and not changed:
+        if any(card.key in ("CONTACTPAIR", "CONTACT") for card in before):
+            return tuple(cards), None  # where bodies just touch without load CalculiX has them apart, abut together
+        start = [_as_large(card, steps[1][0]) for card in map(_as_static, steps[0])]
+        loading = [card for step in steps[1:-1] for card in step]
+        return (*before, *start, *loading), replace(modes, loaded=True, unloaded=True)
     return tuple(cards), None
+
+
+def _as_large(card: Card, after: Card) -> Card:
+    """*STEP of what has no loads, with the displacements, small or large, of the one after it."""
+    if card.key != "STEP" or not after.has("NLGEOM"):
+        return card
+    return replace(card, parameters={**card.parameters, "NLGEOM": after.get("NLGEOM")})
 
 
 def _as_static(card: Card) -> Card:

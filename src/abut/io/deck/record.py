@@ -302,9 +302,9 @@ class PreTension:
 class Prescribed:
     """A value at keys: (node, direction) for supports and forces, (element, face) for pressures, (node,) for temperatures,
     (number of a pair, 0) for the overlap that contact allows; a temperature's ``vector`` begins with its slope along the
-    normal of shells; face 0 with ``vector``: gravity on the element, or a
-    centrifugal force, a point of whose axis and its direction it has. amplitude: name, or "" for the ramp; frozen: of a
-    support, held where it is as the step begins."""
+    normal of shells; face 0 with ``vector``: gravity on the element, or a centrifugal force, a point of whose axis and its direction
+    it has. amplitude: name, or "" for the ramp; frozen: of a support, held where it is as the step begins; imaginary: a
+    quarter of a period ahead (LOAD CASE=2)."""
 
     kind: str  # boundary | force | pressure | gravity | centrifugal | temperature | interference | shrink
     numbers: Numbers
@@ -314,6 +314,7 @@ class Prescribed:
     place: Place
     vector: tuple[float, ...] = (0.0, 0.0, 0.0)
     frozen: bool = False
+    imaginary: bool = False
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 _HEAT = "take the temperatures from a heat solver and give them by *TEMPERATURE in a *STATIC step"
-_MODES = "use *FREQUENCY alone for the modes, or *STATIC with the largest forces"
+_MODES = (
+    "write one *FREQUENCY step, then this one, without further parameters, or [harmonic] or [transient] of a job file "
+    "(abut convert)"
+)
 _DESIGN = "use *STATIC, and change the design from run to run (abut sweep)"
 PROCEDURES = {  # other than *STATIC: what each is, and what to do; ignoring one leaves the whole step out
     "BUCKLE": ("buckling but as the only step", "make a deck whose only step it is"),
@@ -19,7 +22,7 @@ PROCEDURES = {  # other than *STATIC: what each is, and what to do; ignoring one
     "FEASIBLE DIRECTION": ("optimisation", _DESIGN),
     "FREQUENCY": (
         "eigenfrequencies but as the only step, in the last one with *STEP, PERTURBATION (of the loaded state), or beside "
-        "static steps without NLGEOM and contact, and then without loads, upper limit and STORAGE=YES",
+        "static steps without NLGEOM and contact, and then without loads, upper limit and (but for vibrations) STORAGE=YES",
         "write the step so, in a deck of its own",
     ),
     "GREEN": ("Green functions", "use *STATIC with each unit force"),
@@ -67,7 +70,7 @@ REFUSED: dict[str, str] = {
     "MAGNETIC PERMEABILITY": "it belongs to electromagnetics, which abut does not solve; take it out",
     "MASS": "point masses belong to dynamics; take them out, and give their weight by *CLOAD",
     "MASS FLOW": _FLOW,
-    "MODAL DAMPING": "damping belongs to dynamics; take it out",
+    "MODAL DAMPING": "damping belongs to *STEADY STATE DYNAMICS and *MODAL DYNAMIC; take it out",
     "MULTI-STAGE CYCLIC SYMMETRY": "multistage cyclic symmetry is not supported; model one sector",
     "NCOPY": f"generated nodes are not read{_WRITE}",
     "NFILL": f"generated nodes are not read{_WRITE}",

@@ -171,12 +171,14 @@ def prescribed(card: Card, mesh: MeshCards, known: Mapping[str, Amplitude]) -> l
         raise card.unknown(f"no *AMPLITUDE named {card.get('AMPLITUDE')!r}{nearest(amplitude, known)}")
     if card.has("TIME DELAY") and not amplitude:
         raise card.error("TIMEDELAY goes with AMPLITUDE; give one, or take TIME DELAY out")
-    if card.get("LOAD CASE", "1") != "1":
-        raise card.error("LOADCASE: imaginary parts belong to steady-state dynamics, which abut does not solve")
+    case = card.get("LOAD CASE", "1")
+    if case not in ("1", "2"):
+        raise card.error(f"LOADCASE={case}: expected 1 (real part) or 2 (imaginary part)")
     if key(card.get("TYPE", "DISPLACEMENT") or "") != "DISPLACEMENT":
         raise card.error(f"TYPE={card.get('TYPE')}: only displacements can be prescribed in statics")
     amplitude = later(card)
     found = [value for line in card.lines for value in _LINES[card.key](line, amplitude, mesh)]
+    found = [replace(value, imaginary=True) for value in found] if case == "2" else found
     if not card.has("FIXED"):
         return found
     if amplitude or any(value.value for value in found):
