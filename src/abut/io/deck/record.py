@@ -302,9 +302,9 @@ class PreTension:
 class Prescribed:
     """A value at keys: (node, direction) for supports and forces, (element, face) for pressures, (node,) for temperatures,
     (number of a pair, 0) for the overlap that contact allows; a temperature's ``vector`` begins with its slope along the
-    normal of shells; face 0 with ``vector``: gravity on the element, or a centrifugal force, a point of whose axis and its direction
-    it has. amplitude: name, or "" for the ramp; frozen: of a support, held where it is as the step begins; imaginary: a
-    quarter of a period ahead (LOAD CASE=2)."""
+    normal of shells; face 0 with ``vector``: gravity on the element, or a centrifugal force, a point of whose axis and its
+    direction it has. amplitude: name, or "" for the ramp; frozen: of a support, held where it is as the step begins;
+    imaginary: a quarter of a period ahead."""
 
     kind: str  # boundary | force | pressure | gravity | centrifugal | temperature | interference | shrink
     numbers: Numbers
@@ -319,8 +319,7 @@ class Prescribed:
 
 @dataclass(frozen=True)
 class Increments:
-    """Of a *STATIC step, times: the first one, the longest one; fixed: all are as the first (DIRECT); stabilized:
-    STABILIZE."""
+    """Of a *STATIC step, times: the first one, the longest one; fixed: all are as the first (DIRECT); stabilized."""
 
     first: float
     longest: float
