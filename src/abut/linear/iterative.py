@@ -168,13 +168,16 @@ class Multigrid:
         return problem
 
     def prepare(self, system: Linearised, previous: Prepared | None) -> Iterative:
-        """As in ``LinearSolver``: the hierarchy stays while the stiffness does, the rest while the operator does too; at
-        large displacements both stay for a load step."""
+        """As in ``LinearSolver``: the hierarchy stays while the stiffness does, the rest while the operator does too; both
+        stay for a load step at large displacements, and where bodies flow."""
         if system.about is not None:
             return self._at_state(system, previous)
         known = previous if isinstance(previous, Iterative) and previous.system.stiffness is system.stiffness else None
         if known is not None and known.system.operator is system.operator:
             return replace(known, system=system)
+        if isinstance(previous, Iterative) and self._same_step(previous.system, system):
+            levels = replace(previous.hierarchy, product=lambda values: np.asarray(system.stiffness @ values))
+            return replace(previous, system=system, hierarchy=levels)
         if known is None:
             bodies = bodies_now(self.problem, system)
             levels = hierarchy(eliminated(system.stiffness), bodies.free, bodies.near_null, bodies.points)
@@ -182,6 +185,11 @@ class Multigrid:
         else:
             levels, beside = known.hierarchy, known.loose
         return self._with_pressures(system, levels, beside)
+
+    @staticmethod
+    def _same_step(previous: Linearised, system: Linearised) -> bool:
+        """Whether only the stiffness of the bodies is another one than it was in the same load step."""
+        return previous.time == system.time and previous.operator is system.operator
 
     def _at_state(self, system: Linearised, previous: Prepared | None) -> Iterative:
         """At large displacements. Multigrid is for the bodies' own stiffness, its symmetric part: contact terms tie bodies

@@ -13,9 +13,11 @@ from numpy.typing import NDArray
 
 from abut.contact.coupling import surface_degree
 from abut.contact.pressure_space import DUAL_P1
+from abut.linear.iterative import Iterative
 from abut.linear.solver import LinearSolver, Prepared
 from abut.nonlinear.attempt import Attempt as Attempt
 from abut.nonlinear.exact import Aim
+from abut.nonlinear.forcing import forcing
 from abut.nonlinear.iteration import Found, Increment, largest_force, largest_so_far
 from abut.nonlinear.newton import End, Method, newton
 from abut.problem.balance import Balance
@@ -74,22 +76,44 @@ class Bodies(Method[Trial]):
         self._before = np.inf
 
     def searched(
-        self, system: Linearised, previous: Prepared | None, begin: State, earlier: Sequence[Iteration], settle: bool
+        self,
+        system: Linearised,
+        previous: Prepared | None,
+        begin: State,
+        earlier: Sequence[Iteration],
+        settle: bool,
+        error: float = np.inf,
+        before: float = np.inf,
     ) -> Trial:
-        """The contact problem ``system`` solved from a state on, where a constant problem ends."""
+        """The contact problem ``system`` solved from a state on, where a constant problem ends; iteratively as well as the
+        linearised bodies are worth. error, before: what is left there, and was an iteration ago; infinite where unknown."""
         task = self._task
         prepared = task.solver.prepare(system, previous)
+        eased = self._eased(prepared, error, before)
         left = task.limit - len(earlier) + len(self._earlier)
-        found = task.search(prepared, begin, task.increment, left, task.observe, earlier, self._aim, settle)
+        found = task.search(eased, begin, task.increment, left, task.observe, earlier, self._aim, settle)
         if task.problem.constant or not found.converged:
             return Trial(found, prepared, system, 0.0)
         system = task.problem.linearise(task.before, task.frame, found.state)
-        return Trial(found, prepared, system, _unbalanced(system, found.state, task.increment))
+        law = found.iterations[-1].contact_residual if eased is not prepared else 0.0
+        return Trial(found, prepared, system, max(_unbalanced(system, found.state, task.increment), law))
 
     def advanced(self, here: Trial) -> Trial:
         """As in ``Method``."""
-        self._before = here.error
-        return self.searched(here.system, here.prepared, here.found.state, here.found.iterations, settle=True)
+        before, self._before = self._before, here.error
+        return self.searched(
+            here.system, here.prepared, here.found.state, here.found.iterations, True, here.error, before
+        )
+
+    def _eased(self, prepared: Prepared, error: float, before: float) -> Prepared:
+        """A solver that leaves the share of ``error`` that Newton's method on the bodies has no use for (``forcing``): an
+        iterative one, of laws that the search judges by what is left of them."""
+        plain = not any(pair.frictional or pair.smooth for pair in prepared.system.pairs)
+        if self._task.problem.constant or not (isinstance(prepared, Iterative) and plain):
+            return prepared
+        asked = self._task.increment.settings
+        worth = error * forcing(error, before, asked) if np.isfinite(error) else asked.accuracy.rough
+        return replace(prepared, accurate=max(prepared.accurate, worth))
 
     def ended(self, there: Trial) -> End | None:
         """As in ``Method``."""
