@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import xml.etree.ElementTree as ET
+from math import factorial
 from pathlib import Path
 
 import numpy as np
@@ -62,15 +63,19 @@ def arrays(data) -> dict[str, np.ndarray]:
 
 
 def measure(grid) -> float:
-    """Length, area or volume of all cells, by VTK's own shape functions (its triangulation of each cell)."""
-    from vtkmodules.vtkFiltersVerdict import vtkCellSizeFilter
+    """Length, area or volume of all cells, by VTK's own division into simplices (up to VTK 9.5 its filter for sizes leaves
+    wedges out)."""
+    from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints
 
-    size = vtkCellSizeFilter()
-    size.SetInputData(grid)
-    size.Update()
-    return float(
-        sum(sum(a) for n, a in arrays(size.GetOutput().GetCellData()).items() if n in ("Length", "Area", "Volume"))
-    )
+    total = 0.0
+    for i in range(grid.GetNumberOfCells()):
+        cell, ids, points = grid.GetCell(i), vtkIdList(), vtkPoints()
+        cell.Triangulate(0, ids, points)
+        corners = np.array([points.GetPoint(k) for k in range(points.GetNumberOfPoints())])
+        simplices = corners.reshape(-1, cell.GetCellDimension() + 1, 3)
+        edges = simplices[:, 1:] - simplices[:, :1]
+        total += np.sqrt(np.linalg.det(edges @ edges.transpose(0, 2, 1))).sum() / factorial(cell.GetCellDimension())
+    return float(total)
 
 
 @pytest.mark.parametrize("cell", PLANE + SOLID)

@@ -95,6 +95,17 @@ class _End:
     def nodal(self) -> NDArray[np.float64]:
         return self.displacement.reshape(-1, self.problem.model.dim)
 
+    @property
+    def linked(self) -> NDArray[np.float64]:
+        """The part of ``reaction`` that holds points together."""
+        links = self.problem.constraints.links
+        return np.zeros_like(self.reaction) if links is None else links.forces(self.reaction)
+
+    @property
+    def by_supports(self) -> NDArray[np.float64]:
+        """The other part, (n_points, dim)."""
+        return (self.reaction - self.linked).reshape(-1, self.problem.model.dim)
+
 
 def step_result(
     assembled: Assembled, attempt: Attempt, before: Sequence[Step], acted: Acted = None, shown: Mended | None = None
@@ -106,9 +117,8 @@ def step_result(
     Raises SingularModelError for displacements that no units explain."""
     end = _end(assembled, attempt)
     problem, balance, state = end.problem, end.balance, end.state
-    model, constraints, springs = problem.model, problem.constraints, problem.springs
-    linked = np.zeros_like(end.reaction) if constraints.links is None else constraints.links.forces(end.reaction)
-    by_supports = (end.reaction - linked).reshape(-1, model.dim)
+    model, constraints = problem.model, problem.constraints
+    by_supports = end.by_supports
     own = assembled.bodies.stress(end.motion) if shown is None else shown.fits.stress
     moved = end.nodal if shown is None else shown.displacement
     points = model.mesh.points if model.small_strains else model.mesh.points + end.nodal
@@ -118,9 +128,7 @@ def step_result(
     contacts = _contacts(end, attempt, before, averages(solids, near), shown)
     known = known_stress(model, points, moved, state.time, change, list(zip(balance.pairs, contacts)))
     values = recovered(solids, points, own, known, None if shown is None else shown.fits, change)
-    stress = at_points(solids.patches, values, len(points))
-    told = _finite_energy if model.finite else _energy
-    acting, work = told(end, attempt, acted, contacts, before)
+    acting, work = (_finite_energy if model.finite else _energy)(end, attempt, acted, contacts, before)
     strained = beyond_rounding(end.internal, balance, end.displacement)
     pushes = [float(np.abs(pair.rows.T @ p).sum()) / 2.0 for pair, p in zip(balance.pairs, end.pressures)]
     step = Step(
@@ -130,7 +138,7 @@ def step_result(
         reason=attempt.reason,
         iterations=attempt.iterations,
         displacement=end.nodal,
-        stress=stress,
+        stress=at_points(solids.patches, values, len(points)),
         own_stress=of_shells(solids, values),
         reaction=(end.reaction + end.sprung).reshape(-1, model.dim).sum(axis=0),
         **vars(reactions(model, constraints.bodies, by_supports, end.nodal)),
@@ -145,8 +153,8 @@ def step_result(
         pressed=max(pushes, default=0.0),
         strain=max((pair.compliance * c.max_pressure / 4.0 for pair, c in zip(balance.pairs, contacts)), default=0.0),
         rounding=_rounding(balance, state.unknowns),
-        spring=held_force(springs, state),
-        neutral=springs.noise,
+        spring=held_force(problem.springs, state),
+        neutral=problem.springs.noise,
         strained=strained,
         grown=not strained and grows(solids, change, balance, end.displacement),
         landed=_landed(state),
@@ -157,7 +165,7 @@ def step_result(
         remembered={**remembered(solids, end.motion.history), **node_fields(problem, end.motion, state)},
         penetrations=penetration_results(problem, state, end.displacement),
         flow=end.flow,
-        preloads=_preloads(end, linked),
+        preloads=_preloads(end),
         springs=_springs(end),
         connectors=connector_results(problem, state),
         nodal_reaction=end.reaction.reshape(-1, model.dim),
@@ -294,13 +302,12 @@ def _springs(end: _End) -> dict[str, NDArray[np.float64]]:
     return found
 
 
-def _preloads(end: _End, linked: NDArray[np.float64]) -> dict[str, PreloadResult]:
-    """linked: forces (dim n_points,) of what holds points together."""
+def _preloads(end: _End) -> dict[str, PreloadResult]:
     model = end.problem.model
     if not model.preloads:
         return {}
     drawn = preload_forces(model) @ end.balance.factors + end.locked
-    return preload_results(model, end.state, end.displacement, drawn, linked)
+    return preload_results(model, end.state, end.displacement, drawn, end.linked)
 
 
 def _contacts(

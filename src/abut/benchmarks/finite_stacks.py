@@ -65,8 +65,8 @@ def leaf_force() -> float:
 def rough_pad() -> Model:
     """A flat pad of rubber on a base that holds it, under a plate with friction 1, which goes down."""
     parts = {
-        "pad": rectangle([-HALF, HALF], [0, HEIGHT], (16, 4), "quad8"),
-        "plate": rectangle([-2 * HALF, 2 * HALF], [HEIGHT, HEIGHT + 0.3], (12, 2), "quad8"),
+        "pad": rectangle([-HALF, HALF], [0, HEIGHT], (48, 12), "quad8"),
+        "plate": rectangle([-2 * HALF, 2 * HALF], [HEIGHT, HEIGHT + 0.3], (36, 6), "quad8"),
     }
     return Model(
         join(parts),
@@ -115,9 +115,9 @@ BENCHMARKS = (
         {
             "force": Reference(
                 bonded_force(),
-                0.02,
+                0.035,
                 "bonded pads: Gent and Lindley 1959",
-                "its parabola of pressures, and 2 % of strain",
+                "its parabola of pressures is 2.2 % below what fine cells make of a bonded pad, these cells 0.5 % above",
             )
         },
     ),

@@ -109,11 +109,15 @@ def solve_finite(step: Step, guess: State | None, time: float) -> Found:
     """The state at ``time``, from a guess there; None: from the last converged state, whose tangent carries what is
     prescribed further.
 
-    Laws of one's own begin from the solution of complementarity where they do not converge otherwise, the constraint
-    function in any case; its smoothing goes with the largest pressure there."""
+    Laws of one's own begin from the solution of complementarity where nothing has pressed yet (two blocks without other
+    supports on a soft contact, ``tests/decks/test_deck_soft.py``, fly apart otherwise), and where they do not converge
+    otherwise. The constraint function does in any case; its smoothing goes with the largest pressure there."""
     pairs = [pair for pair in step.problem.pairs if pair.smooth]
     own = any(not isinstance(pair.contact.law, str) for pair in pairs)
-    for way in [_solved, _by_complementarity] if own else [_solved]:
+    ways = [_solved, _by_complementarity] if own else [_solved]
+    if own and step.before.largest.pressure == 0.0:
+        ways.reverse()
+    for way in ways:
         step.failed = ""
         found = way(step, guess, time)
         if found.converged:

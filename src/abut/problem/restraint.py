@@ -205,7 +205,7 @@ def unbalanced(
     forces = np.concatenate([np.zeros((0, len(work))), *(_pushes(p, moves, part) for p, part in zip(pairs, chosen))])
     if not len(forces):
         return work
-    pressure, missing = nnls(forces.T, -work)
+    pressure, missing = _combined(forces.T, -work)
     return work + forces.T @ pressure if missing > UNBALANCED * size else None
 
 
@@ -221,7 +221,7 @@ def unheld(
     loads = [work / np.linalg.norm(work) for work, size in works if _drives(work, size)]
     columns = np.concatenate([forces, *(load[None] for load in loads)])
     even = forces.sum(axis=0)  # all pressures may be one, and more: then each contact is under pressure
-    if not len(forces) or nnls(columns.T, -even)[1] <= UNBALANCED * len(forces):
+    if not len(forces) or _combined(columns.T, -even)[1] <= UNBALANCED * len(forces):
         return None
     pair_of = np.repeat(np.arange(len(pairs)), [len(push) for push in pushes])
     for i, pair in enumerate(pairs):
@@ -231,10 +231,17 @@ def unheld(
         carried[: len(forces)] = pair_of == i
         system = np.vstack([columns.T, carried])
         wanted = np.append(np.zeros(moves.shape[1]), 1.0)  # in balance, with a pressure of one in this contact
-        amounts, missing = nnls(system, wanted)
+        amounts, missing = _combined(system, wanted)
         if missing > UNBALANCED:
             return np.asarray((system @ amounts - wanted)[:-1])
     return None
+
+
+def _combined(columns: NDArray[np.float64], wanted: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
+    """Amounts (n,), none negative, of columns (m, n) that make most of what is wanted (m,), and what is missing. That is
+    computed here: SciPy 1.15, the last one for Python 3.10, says that nothing is where something is."""
+    amounts = nnls(columns, wanted)[0]
+    return amounts, float(np.linalg.norm(columns @ amounts - wanted))
 
 
 def _drives(work: NDArray[np.float64], size: float) -> bool:
