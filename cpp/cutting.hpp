@@ -299,14 +299,14 @@ private:
             std::min(far, deepest(both_.contactor.surface, f, both_.target.surface, std::size_t(t)))};
   }
 
-  // Leaves out walls, and says what each segment is for. add(own, plane) gives the plane that touches a segment its
-  // corners.
+  // Says what each segment is for: walls hide what is behind them. add(own, plane) gives the plane that touches a
+  // segment its corners.
   template <class Add> void cast(std::size_t f, const Facet &c, Add add) {
-    std::erase_if(segments_,
-                  [&](const Segment &own) { return both_.neighbours.wall(own.target, own.x, own.n, own.gap); });
     double deep = 0;
     for (Segment &own : segments_) {
       own.role = role_of(both_.contactor.surface, f, both_.target.surface, std::size_t(own.target));
+      if (own.role == Role::counts && both_.neighbours.wall(own.target, own.x, own.n, own.gap))
+        own.role = Role::hides;
       if (own.role == Role::counts)
         deep = std::max(deep, -own.gap);
     }

@@ -80,8 +80,8 @@ def test_extruded_by_one_cell() -> None:
 @pytest.mark.parametrize("cell", ["hex8", pytest.param("tet10", marks=pytest.mark.exhaustive)])
 def test_jaws_pushed_across_and_turned(cell: str) -> None:
     """Nothing of it is plane. The jaws slip all over: each function carries the coefficient times its pressure against its
-    slip, forces and moments of both sides add up to none, and the certificate's lines hold. Friction follows the load
-    steps, which tet10 has others of when it looks at the whole body, 12 for 8: 1e-3."""
+    slip, forces and moments of both sides add up to none, and the certificate's lines hold. hex8
+    to rounding; tet10 to the rule of integration, which is that of the most curved facet, elsewhere on the whole body."""
     states: list[State] = []
     model = wrung(cell, friction=0.3)
     whole = abut.solve(model, on_step=lambda _, saved: states.append(saved.state))
@@ -89,7 +89,7 @@ def test_jaws_pushed_across_and_turned(cell: str) -> None:
     assert whole.converged
     assert named.converged
     balanced(whole)
-    same(whole, named, 1e-9 if len(whole.steps) == len(named.steps) else 1e-3)
+    same(whole, named, 1e-3 if cell == "tet10" else 1e-9)
     wanted = {"friction cone", "friction direction", "force balance", "moment balance", "energy balance"}
     checks = {check.name: check.passed for check in whole.certificate}
     assert all(passed for name, passed in checks.items() if name in wanted)
