@@ -32,6 +32,7 @@ def _dented() -> abut.Model:
     )
 
 
+@pytest.mark.long
 def test_flow_by_multigrid() -> None:
     """The state is that of a direct solver, and iterations are not many more: solutions of linearised problems to rounding,
     with the tangent of a state that is still far off, took twice as many."""
