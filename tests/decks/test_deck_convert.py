@@ -1,6 +1,7 @@
 """abut convert: the job file that a deck becomes gives the same answer; broken decks give errors, never tracebacks."""
 
 import random
+import tomllib
 
 import numpy as np
 import pytest
@@ -98,10 +99,6 @@ def test_meshes_become_vtu(tmp_path):
 
 
 def test_toml_is_read_back():
-    try:
-        import tomllib
-    except ImportError:
-        import tomli as tomllib
     table = {
         "schema": 1,
         "a b": {"x": 'say "no"\n', "list": [1.5, -2e-300], "in": {"deep": True}},

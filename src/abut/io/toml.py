@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 import re
-import sys
+import tomllib
 from pathlib import Path
 from typing import Any
 
 from abut.errors import InputError
 from abut.types import Json
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
 
 PARTS = 50  # of a dotted key; reading one takes time with the square of their number
 BITS = 64  # of a whole number, as TOML has them

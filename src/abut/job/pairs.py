@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-import sys
+import tomllib
 from pathlib import Path
 
 from abut.contact.sides import listed
@@ -14,11 +14,6 @@ from abut.io.atomic import write_text
 from abut.job.load import Job, load_job
 from abut.model import Contact
 from abut.types import Json
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
 
 HEADER = re.compile(r"^\s*\[\[?([^\[\],]+)\]\]?\s*(#.*)?$")
 

@@ -238,12 +238,9 @@ def unheld(
 
 
 def _combined(columns: NDArray[np.float64], wanted: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
-    """Amounts (n,), none negative, of columns (m, n) that make most of what is wanted (m,), and what is missing beyond the
-    rounding of their sum. That is computed here: SciPy 1.15, the last one for Python 3.10, says that nothing is where
-    something is."""
-    amounts = nnls(columns, wanted)[0]
-    rounding = 4.0 * np.finfo(float).eps * float(np.linalg.norm(np.abs(columns) @ amounts))
-    return amounts, max(float(np.linalg.norm(columns @ amounts - wanted)) - rounding, 0.0)
+    """Amounts (n,), none negative, of columns (m, n) that make most of what is wanted (m,), and what is missing."""
+    amounts, missing = nnls(columns, wanted)
+    return amounts, float(missing)
 
 
 def _drives(work: NDArray[np.float64], size: float) -> bool:
