@@ -6,12 +6,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy.sparse as sp
 
 import abut
 from abut.diagnosis import check
 from abut.mesh import make
 from abut.problem.constraints import supports
 from abut.problem.contact_pairs import pairs
+from abut.problem.free_modes import free_mode_springs
+from abut.problem.loads import loads
 from abut.problem.neutral_motions import Neutral, neutral_motions
 from abut.problem.restraint import restraint
 
@@ -101,6 +104,30 @@ def test_a_taper_is_no_noise(taper: float, expected: int) -> None:
         contacts=[abut.Contact("shaft.round", "hub.inner", offset=-0.001)],
     )  # fmt: skip
     assert np.linalg.matrix_rank(found(model).motions, tol=0.1) == expected
+
+
+@pytest.mark.parametrize("told", [True, False])
+def test_facets_that_hardly_resist(told: bool) -> None:
+    """Facets of curved cells may by chance leave a spin free to 1e-8 of the strongest resistance, with a little of the other
+    bodies' motions in it: their loads are none on the spin. (Balls of hex20 in grooves, an unstructured mesh.)"""
+    model = races("quad4", 6, 53)
+    constraints = supports(model)
+    every = pairs(model, constraints)
+    held = restraint(model.mesh, constraints, every)
+    neutral = neutral_motions(held.rigid, held.steady, every)
+    pressed = np.zeros(len(held.rigid.modes))
+    pressed[1::2] = -1.0
+    mixed = neutral.motions[:, 0] + 0.02 * held.rigid.modes.T @ pressed / np.linalg.norm(held.rigid.modes.T @ pressed)
+    mixed /= np.linalg.norm(mixed)
+    resisted = np.eye(len(mixed)) - (1.0 - 1e-8) * np.outer(mixed, mixed)
+    unit = sp.identity(constraints.free.shape[1], format="csr")
+    (load,) = loads(model).at_ends(model)
+    args = (held.rigid, [np.zeros_like(resisted), resisted], constraints, unit, [load])
+    if told:
+        assert any("resists it by its facets alone" in note for note in free_mode_springs(*args, neutral).notes)
+    else:
+        with pytest.raises(abut.SingularModelError, match="the loads act in that direction"):
+            free_mode_springs(*args)
 
 
 def test_friction_resists() -> None:
