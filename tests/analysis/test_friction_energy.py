@@ -12,7 +12,7 @@ import pytest
 import abut
 from abut.analysis import friction as analysed
 from abut.mesh import make
-from abut.problem import affine
+from abut.problem import load_steps
 from models.friction import FRICTION, PRESSURE, Hooke, cattaneo, on_a_slope, pushed, sheared
 from models.patch import two_blocks
 from models.twisted import twisted
@@ -146,12 +146,12 @@ def test_nothing_happens_for_a_while() -> None:
 
 def test_a_slip_that_is_none_fails(monkeypatch: pytest.MonkeyPatch) -> None:
     """Slip that is a hundredth larger than the displacements say: no other line sees it."""
-    honest = affine.slips
+    honest = load_steps.slips
 
     def wrong(*given: Any) -> dict[str, np.ndarray]:
         return {name: 1.01 * slip for name, slip in honest(*given).items()}
 
-    monkeypatch.setattr(affine, "slips", wrong)
+    monkeypatch.setattr(load_steps, "slips", wrong)
     failed = {check.name for check in abut.solve(pushed(far=0.05)).certificate if not check.passed}
     assert failed == {"energy balance"}
 

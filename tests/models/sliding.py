@@ -56,14 +56,12 @@ def bent(mesh: Mesh, move: Callable[[NDArray[np.float64]], NDArray[np.float64]])
 
 def finite(model: abut.Model) -> ContactProblem:
     """The problem of a model as a run sets it up."""
-    problem = Run.of(model, lambda *_: None, lambda *_: None, None, ()).assembled.problem
-    assert problem.kinematics is not None
-    return problem
+    return Run.of(model, lambda *_: None, lambda *_: None, None, ()).assembled.problem
 
 
 def current(problem: ContactProblem) -> Current:
     """How its only pair is looked at."""
-    (kind,) = problem.kinematics or ()
+    (kind,) = problem.kinematics
     assert isinstance(kind, Current)
     return kind
 
@@ -73,7 +71,7 @@ def forgetful(problem: ContactProblem, size: float) -> State:
     displacements of that size from it."""
     start, contacts = problem.start(), {}
     there = replace(start, unknowns=size * np.random.default_rng(5).standard_normal(problem.n_free))
-    for kind in problem.kinematics or ():
+    for kind in problem.kinematics:
         name, ways = kind.pair.contact.name, (problem.displacement(start), problem.displacement(there))
         known, every = start.history.contacts[name], np.ones(len(kind.pair), dtype=bool)
         assert isinstance(kind, Current)

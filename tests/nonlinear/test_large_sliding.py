@@ -78,7 +78,7 @@ def test_a_long_way_into_the_target_is_seen() -> None:
     moved = np.zeros_like(model.mesh.points)
     moved[model.mesh.nodes_of("upper.bottom"), 1] = -0.95
     trial = replace(before, unknowns=problem.constraints.free.T @ moved.ravel(), time=0.1)
-    (kind,) = problem.kinematics or ()
+    (kind,) = problem.kinematics
     own = kind.at(PairFrame(), problem.placed(trial)[0], problem.displacement(before))
     middle = own.gap / problem.pairs[0].weight
     assert middle.min() < -0.8

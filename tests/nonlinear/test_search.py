@@ -126,7 +126,8 @@ def prepared(model: abut.Model) -> Ready:
     whole, solver = assembled(model), Direct()
     own = solver.condensed(whole)
     first = replace(own.start(), time=1.0)
-    return Ready(whole, own, first, solver.prepare(own.linearise(first, own.frame(first), first), None))
+    system = own.linearise(first, own.frame(whole.start()), first)
+    return Ready(whole, own, first, solver.prepare(system, None))
 
 
 def searched(ready: Ready) -> tuple[State, int]:

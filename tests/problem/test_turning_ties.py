@@ -11,8 +11,10 @@ from scipy.spatial.transform import Rotation
 
 import abut
 from abut.mesh import make
+from abut.problem.frame import PairFrame
+from abut.problem.kinematics import ContactNow, Kinematics
 from abut.problem.problem import ContactProblem
-from abut.problem.turning_ties import CurrentTie, TurningTie
+from abut.problem.turning_ties import TurningTie
 from models.sliding import SOFT, finite
 
 ANGLE = np.deg2rad(70.0)
@@ -49,11 +51,10 @@ def layers(dim: int, gap: float, curved: bool) -> abut.Model:
     )  # fmt: skip
 
 
-def across(problem: ContactProblem) -> TurningTie | None:
-    """What turns in its only tie."""
-    (kind,) = problem.kinematics or ()
-    assert isinstance(kind, CurrentTie)
-    return kind.across
+def tie_of(problem: ContactProblem) -> Kinematics:
+    """Its only one."""
+    (kind,) = problem.kinematics
+    return kind
 
 
 @pytest.mark.parametrize("curved", [False, True])
@@ -62,7 +63,8 @@ def across(problem: ContactProblem) -> TurningTie | None:
 def test_a_turn_strains_nothing(dim: int, gap: float, curved: bool) -> None:
     """Where the tie held undeformed points together, a gap of 0.1 would be sheared by 70 degrees."""
     model = layers(dim, gap, curved)
-    assert (across(finite(model)) is None) == (gap == 0.0 and not curved)  # chords of an arc lie apart
+    turns = isinstance(tie_of(finite(model)), TurningTie)
+    assert turns == (gap > 0.0 or curved)  # chords of an arc lie apart
     solution = abut.solve(model)
     assert solution.converged
     turned = model.mesh.points @ about(dim).T
@@ -75,19 +77,23 @@ def test_jumps_and_forces(dim: int) -> None:
     """The rows are the derivative of the jumps, to central differences, and so forces and moments of any tractions balance
     wherever the jumps are none."""
     model = layers(dim, 0.1, True)
-    tie = across(finite(model))
-    assert tie is not None
+    problem = finite(model)
+    tie, (rest,) = tie_of(problem), problem.placed(problem.start())
+
+    def at(displacement: NDArray[np.float64]) -> ContactNow:
+        return tie.at(PairFrame(), replace(rest, displacement=displacement), rest.displacement)
+
     points, rng = model.mesh.points, np.random.default_rng(1)
     here = (points @ about(dim).T + [1.0, 2.0, 3.0][:dim] - points).ravel()
-    jump, rows = tie.at(here)
+    jump, rows = at(here).gap, at(here).by_position
     assert np.abs(jump).max() < 1e-13
     way = rng.standard_normal(len(here))
-    (ahead, _), (back, _) = tie.at(here + 1e-6 * way), tie.at(here - 1e-6 * way)
-    assert np.abs((ahead - back) / 2e-6 - rows @ way).max() < 1e-8 * np.abs(rows @ way).max()
+    ahead, back = at(here + 1e-6 * way), at(here - 1e-6 * way)
+    assert np.abs((ahead.gap - back.gap) / 2e-6 - rows @ way).max() < 1e-8 * np.abs(rows @ way).max()
     force = (rows.T @ rng.standard_normal(rows.shape[0])).reshape(-1, dim)
-    at = points + here.reshape(-1, dim)
+    where = points + here.reshape(-1, dim)
     assert np.abs(force.sum(axis=0)).max() < 1e-13 * np.abs(force).sum()
-    assert np.abs(at.T @ force - force.T @ at).max() < 1e-12 * np.abs(force).sum()
+    assert np.abs(where.T @ force - force.T @ where).max() < 1e-12 * np.abs(force).sum()
 
 
 def test_a_load_on_a_tie_across_a_gap() -> None:

@@ -33,7 +33,7 @@ def covered(
     that nothing is opposite to, and which are left, (n,); weights are those of the part that is covered, planes of
     symmetry those where the contactor ends now."""
     pairs, keeps, gaps, contacts = [], [], [], {}
-    parts = problem.kinematics or (), problem.pairs, balance.split(balance.gap)
+    parts = problem.kinematics, problem.pairs, balance.split(balance.gap)
     for pair, kind, whole, gap in zip(balance.pairs, *parts):
         keep, name = np.ones(len(pair), dtype=bool), pair.contact.name
         known = state.history.contact(name)
@@ -67,13 +67,13 @@ def _planes_now(problem: ContactProblem, kind: Current, pair: Pair) -> Planes:
 
 
 def whole_supports(problem: ContactProblem, pairs: Sequence[Pair], keep: NDArray[np.bool_]) -> list[Array | None]:
-    """int H_k over all of the contactor where it is now, (n_functions,) of each pair, without what follows it; None of ties.
-    pairs: as from ``covered``; keep: (n,) multipliers of the problem that are left."""
+    """int H_k over all of the contactor where it is now, (n_functions,) of each pair, without what follows it; None of ties
+    and where bodies are not looked at. pairs: as from ``covered``; keep: (n,) multipliers of the problem that are left."""
     return [
-        None
-        if pair.tied
-        else (whole.space.plain.T @ full_moments(pair.contactor, pair.coupling.degree).ravel())[own[whole.normal]]
-        for pair, whole, own in zip(pairs, problem.pairs, problem.split(keep))
+        (kind.pair.space.plain.T @ full_moments(pair.contactor, pair.coupling.degree).ravel())[own[kind.pair.normal]]
+        if isinstance(kind, Current)
+        else None
+        for pair, kind, own in zip(pairs, problem.kinematics, problem.split(keep))
     ]
 
 
@@ -100,7 +100,7 @@ def _of_covered(pair: Pair, keep: NDArray[np.bool_], undeformed: Array) -> Pair:
     return replace(
         pair, space=replace(components[0], removed=pair.space.removed + int((~functions).sum())),
         components=tuple(components), index=index, rows=pair.rows[keep], operator=pair.operator[keep], gap=pair.gap[keep],
-        prescribed=pair.prescribed[keep], scale=weight / pair.stiffness,
+        scale=weight / pair.stiffness,
         carried=None if pair.carried is None else pair.carried[keep],
         slip=None
         if pair.slip is None

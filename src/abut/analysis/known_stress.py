@@ -90,7 +90,7 @@ def known_stress(
         _add_contact(skin, pair, contact)
     _add_supports(model, skin)
     pieces = _Pieces.of(model, skin)
-    whole = np.flatnonzero(_alone(model, skin, pieces))
+    whole = np.flatnonzero(_alone(model, pieces))
     still = replace(skin.surface, points=model.mesh.points)
     at = SurfacePoints(
         pieces.node[whole], pieces.visits[:, whole].T.tocsr(), pieces.still[whole], pieces.mirrored[whole],
@@ -289,7 +289,7 @@ def _normals(surface: Surface, split: NDArray[np.int32], ends: NDArray[np.bool_]
     return np.asarray(area / np.maximum(np.linalg.norm(area, axis=1, keepdims=True), 1e-300))
 
 
-def _alone(model: Model, skin: _Skin, pieces: _Pieces) -> NDArray[np.bool_]:
+def _alone(model: Model, pieces: _Pieces) -> NDArray[np.bool_]:
     """At which points (n,) the whole traction is known, and there is no other piece or body."""
     of, n = model.deformable.patches, len(model.mesh.points)
     others = np.bincount(pieces.node[~pieces.plane], minlength=n) > 1

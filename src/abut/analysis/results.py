@@ -182,10 +182,8 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
     if turned:
         displacement = problem.springs.without_motions(displacement)
     balance = attempt.balance or Balance.of(problem.again(state, state), state)
-    supports: Sequence[NDArray[np.float64] | None] = [None] * len(balance.pairs)
-    if problem.kinematics is not None:
-        balance, state, kept = covered(problem, balance, state, displacement)
-        cycling, supports = cycling[kept], whole_supports(problem, balance.pairs, kept)
+    balance, state, kept = covered(problem, balance, state, displacement)
+    cycling, supports = cycling[kept], whole_supports(problem, balance.pairs, kept)
     pressures = balance.split(state.multipliers)
     contact_force = np.zeros_like(displacement)
     for pair, pressure in zip(balance.pairs, pressures):

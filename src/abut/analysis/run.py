@@ -180,7 +180,7 @@ class Run:
         states = [problem.start(), *(saved.state for saved in done)]
         pace = self._pace(states, done)
         stepper: Stepper
-        if problem.kinematics is not None:
+        if self.model.finite:
             stepper = LargeSteps(problem, self.solver, control)
         else:
             stepper = SmallSteps(problem, first, self.solver, control)

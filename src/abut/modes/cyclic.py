@@ -16,7 +16,6 @@ from abut.model import Frequencies, Model
 from abut.modes.frequencies import densities, lowest
 from abut.modes.held import Held
 from abut.problem.constraints import Constraints, equations
-from abut.problem.discretised import stacked
 from abut.problem.problem import ContactProblem
 from abut.solution.modes import FREQUENCIES, ModesResult
 from abut.solution.state import State
@@ -47,10 +46,9 @@ class Sides:
         none = replace(
             problem.springs, motions=np.zeros((free.shape[0], 0)), columns=np.zeros(0, np.int64), stiffness=np.zeros(0)
         )
-        return replace(
-            problem, constraints=self.constraints, pairs=pairs, operator=stacked(pairs, free.shape[1]), springs=none,
-            stiffness=None, motions=np.zeros((free.shape[1], 0)),
-        )  # fmt: skip
+        motions = np.zeros((free.shape[1], 0))
+        own = replace(problem, constraints=self.constraints, springs=none, stiffness=None, motions=motions)
+        return own.with_pairs(pairs)
 
 
 def sides(model: Model, constraints: Constraints, side: str) -> Sides:

@@ -69,7 +69,7 @@ def search(course: Course, state: State, limit: int) -> Found | None:
     try:
         with np.errstate(all="ignore"):  # what is no number ends it
             programme = Programme.of(course.solver, course.increment.settings)
-            here = begin(programme, state, manner)
+            here = begin(programme, state)
             method = InteriorSliding(course, programme, manner, float(np.abs(here.state.multipliers).max()))
             return newton(method, Trial(here, np.where(programme.solver.system.tied, CLOSED, OPEN)), limit)[0].found
     except SingularModelError:

@@ -195,7 +195,7 @@ def near(programme: Programme, here: Interior) -> _Near:
     return _Near(programme, here, gap[programme.normal], programme.tangential(gap))
 
 
-def begin(programme: Programme, state: State, manner: Manner) -> Interior:
+def begin(programme: Programme, state: State) -> Interior:
     """The starting point: one solution with softness everywhere, theory (V17), tractions at most halfway to their bounds."""
     system = programme.solver.system
     soft = np.where(system.tied, 0.0, programme.softness * system.scale)

@@ -55,7 +55,7 @@ def search(
     if log.full:
         return Found(state, tuple(log.done), False, ~tied, active_laws)
     clock = time.perf_counter()
-    here = begin(programme, state, manner)
+    here = begin(programme, state)
     log.add(_row(solver, tied, here.state, increment, log.next, 0, clock))
     method = InteriorContact(Polish(solver, increment, log, aim), programme, manner)
     there, end = newton(method, Inside(here, tied), log.last - len(log.done))

@@ -35,10 +35,11 @@ from abut.problem.pair import Pair
 from abut.problem.penetrations import Penetrations
 from abut.problem.preloads import LockedPreloads
 from abut.problem.problem import ContactProblem
+from abut.problem.reference import Reference
 from abut.problem.restraint import Restraint, helped, require_balance, require_unmoved, restraint
 from abut.problem.springs import Springs
 from abut.problem.terms import Term
-from abut.problem.turning_ties import CurrentTie, turning_tie
+from abut.problem.turning_ties import current_tie
 from abut.solution import Observer, Phase
 from abut.types import Array
 
@@ -103,14 +104,13 @@ def assemble(
         model=model,
         terms=(bodies, *beside),
         constraints=constraints,
-        pairs=every,
+        kinematics=[kinematics(pair, constraints, backend, model.finite) for pair in every],
         operator=stacked(every, reduced.shape[0]),
         restraint=restrained,
         springs=springs,
         stiffness=reduced if affine else None,
         motions=constraints.coordinates(restrained.free),
         unit=unit_of(reduced) if affine else 0.0,
-        kinematics=[kinematics(pair, constraints, backend) for pair in every] if model.finite else None,
         own=frozenset(term.name for term in own),
         integration=integration_of(model.physics),
     )
@@ -159,11 +159,13 @@ def _is_constant(model: Model, terms: Sequence[Term]) -> bool:
     return all(term.constant for term in terms) and all(preload.force is None for preload in model.preloads)
 
 
-def kinematics(pair: Pair, constraints: Constraints, backend: Backend) -> Kinematics:
-    """Of a pair as from ``finite_pairs``, at current positions."""
+def kinematics(pair: Pair, constraints: Constraints, backend: Backend, finite: bool) -> Kinematics:
+    """How a pair is looked at; finite: where its bodies are, a pair as from ``finite_pairs``."""
     reach = reach_of(constraints, pair.contactor, pair.target)
+    if not finite:
+        return Reference(pair)
     if pair.tied:
-        return CurrentTie(pair, turning_tie(pair, reach))
+        return current_tie(pair, reach)
     return Current(pair, backend.differentiate, taken_off(pair, reach) if pair.contact.adjust else None)
 
 

@@ -78,7 +78,7 @@ class Connectors:
             couples = np.reshape(slopes, (len(slopes), rows.shape[0]))
             blocks.append((rows, at.bend, couples, np.array([-self.unit if c.open else 0.0 for c in conditions])))
         sizes[:n] = force[:n]
-        return Share(force, MatrixTangent(_tangent(blocks, len(force), n)), history, sizes=sizes)
+        return Share(force, MatrixTangent(_tangent(blocks, n)), history, sizes=sizes)
 
     def _each(self) -> Iterator[tuple[int, AnyJoint, slice]]:
         """Number, joint, and its multipliers."""
@@ -297,9 +297,9 @@ def _less(jet: Jet, value: float) -> Jet:
     return Jet(np.asarray(jet.value - value), jet.slope, jet.bend)
 
 
-def _tangent(blocks: Sequence[tuple[Sparse, Array, Array, Array]], size: int, n: int) -> Sparse:
-    """(size, size) of connectors one after the other: rows (m, n) of each joint, bends (m, m) of its work, slopes (k, m) of
-    its conditions, (k,) the diagonal of those that are open."""
+def _tangent(blocks: Sequence[tuple[Sparse, Array, Array, Array]], n: int) -> Sparse:
+    """(n + k, n + k) of connectors one after the other: rows (m, n) of each joint, bends (m, m) of its work, slopes (k, m)
+    of its conditions, (k,) the diagonal of those that are open."""
     own = sum((rows.T @ sp.csr_matrix(bend) @ rows for rows, bend, _, _ in blocks), sp.csr_matrix((n, n)))
     coupling = sp.vstack([sp.csr_matrix(couples) @ rows for rows, _, couples, _ in blocks], format="csr")
     diagonal = sp.diags(np.concatenate([open_ for *_, open_ in blocks]))

@@ -103,7 +103,7 @@ def pair(
         tie = tied_rows(contactor, coupling, space, constraints)
         return Pair(
             contact, contactor, target, coupling, space, tie.rows, tie.free,
-            prescribed=tie.rows @ constraints.prescribed, gap=np.zeros(len(tie.weight)), scale=tie.weight / stiffness,
+            gap=np.zeros(len(tie.weight)), scale=tie.weight / stiffness,
             size=size, stiffness=stiffness, index=tie.index, components=tie.components, compliance=both.compliance,
         )  # fmt: skip
     space = without_held(space, contactor, coupling, constraints)
@@ -125,8 +125,7 @@ def pair(
     planes = planes_of(model, contactor, sides_end, goes_on(contactor, sides_end, target, reach), constraints)
     own_pair = Pair(
         contact, contactor, target, coupling, space, rows, free,
-        prescribed=rows @ constraints.prescribed + np.multiply.outer(space.weight, varying),
-        gap=space.transfer.T @ coupling.gap + constant * space.weight,
+        gap=space.transfer.T @ coupling.gap,
         scale=space.weight / stiffness, size=size, stiffness=stiffness, index=np.arange(len(space))[:, None],
         components=(space,), compliance=both.compliance, carried=held(space, contactor, constraints),
         points=None if contact.frictional else _points(coupling, space, constraints, both.young / sizes, constant, varying),
@@ -157,10 +156,9 @@ def _with_tractions(
     sides = FrictionSides(contactor, target, normals, reach, move)
     made = friction_rows(sides, normal_pair.space, normal_pair.rows, operators, constraints)
     more = made.rows.shape[0] - len(normal_pair.space)
-    prescribed = np.vstack([normal_pair.prescribed, (made.rows @ constraints.prescribed)[len(normal_pair.space) :]])
     weight = np.concatenate([space.weight for space in made.components])
     return replace(
-        normal_pair, rows=made.rows, operator=(made.rows @ constraints.free).tocsr(), prescribed=prescribed,
+        normal_pair, rows=made.rows, operator=(made.rows @ constraints.free).tocsr(),
         gap=np.concatenate([normal_pair.gap, np.zeros(more)]), scale=weight / normal_pair.stiffness, index=made.index,
         components=made.components, slip=made.slip, points=None,
         carried=np.concatenate([_carried(normal_pair), made.carried]),
@@ -236,15 +234,13 @@ def with_plain_functions(model: Model, earlier: Pair, constraints: Constraints, 
 def _in_space(model: Model, earlier: Pair, space: PressureSpace, constraints: Constraints) -> Pair:
     """A pair, not tied, with another space."""
     rows = (space.transfer.T @ earlier.coupling.operator).tocsr()
-    constant, varying = offsets(model, earlier.contact)
     points, at = earlier.points, earlier.coupling.points
     if points is not None and at is not None:
         points = replace(points, test=(at.pressure @ space.transfer).tocsr())
     changed = replace(
         earlier, space=space, components=(space,), index=np.arange(len(space))[:, None], rows=rows,
         operator=(rows @ constraints.free).tocsr(), points=points,
-        prescribed=rows @ constraints.prescribed + np.multiply.outer(space.weight, varying),
-        gap=space.transfer.T @ earlier.coupling.gap + constant * space.weight, scale=space.weight / earlier.stiffness,
+        gap=space.transfer.T @ earlier.coupling.gap, scale=space.weight / earlier.stiffness,
         carried=held(space, earlier.contactor, constraints),
     )  # fmt: skip
     if earlier.slip is None:

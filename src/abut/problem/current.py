@@ -31,7 +31,7 @@ from abut.problem.edge_trials import DUAL, INNER, TRIED, anew, trials
 from abut.problem.first_touch import Sides, apart
 from abut.problem.frame import PairFrame
 from abut.problem.gap_fit import MovedSides, Sight, fit_change
-from abut.problem.kinematics import ContactNow, Placed
+from abut.problem.kinematics import ContactNow, Kinematics, Placed
 from abut.problem.pair import TOUCHING, Pair
 from abut.problem.sample_gaps import facets_apart
 from abut.problem.tangent_frames import Frames, anchors, tangents_2d
@@ -49,11 +49,10 @@ GIVING = 8.0  # the same where a law of one's own lets them into each other
 
 
 @dataclass(frozen=True)
-class Current:
+class Current(Kinematics):
     """A pair, not tied, whose surfaces are looked at where they are. pair: as from ``finite_pair``; differentiate: what cuts
     and integrates, here or on several processes; adjusted: as from ``taken_off``, None for nothing."""
 
-    pair: Pair
     differentiate: Differentiate = differentiated
     adjusted: Array | None = None
 

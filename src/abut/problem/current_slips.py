@@ -69,6 +69,7 @@ def contact_load(pair: Pair, multipliers: Array, tangents: Tangents | None) -> C
 def with_friction(now: ContactNow, made: Rubbing, tangents: Array, without_history: NDArray[np.bool_]) -> ContactNow:
     """The same with friction; tangents: (n_functions, dim - 1, dim)."""
     assert now.pair.slip is not None
+    assert now.bending is not None
     return ContactNow(
         replace(
             now.pair,

@@ -30,26 +30,34 @@ from abut.types import Operator, Sparse
 class Discretised:
     """Bodies, loads and contact on the free displacements: what a problem is made of.
 
-    terms: what adds to the balance of forces; held: supports, u = Z q + u_prescribed(t), theory (F8); pairs, operator
-    (n, n_free) all of them stacked; restraint: of rigid-body modes; springs: on free rigid-body modes; stiffness:
+    terms: what adds to the balance of forces; held: supports, u = Z q + u_prescribed(t), theory (F8); operator:
+    (n, n_free) of all pairs, stacked; restraint: of rigid-body modes; springs: on free rigid-body modes; stiffness:
     (n_free, n_free) where every term is constant, else None; motions: (n_free, m) rigid-body modes that supports leave free;
-    unit: size of the stiffness' entries, where it is constant; kinematics: of each pair at current positions, None where all
-    is looked at where bodies were; own: names of the terms of other physics; integration: how rates follow from values.
+    unit: size of the stiffness' entries, where it is constant; kinematics: how each pair is looked at; own:
+    names of the terms of other physics; integration: how rates follow from values.
     """
 
     model: Model
     terms: Sequence[Term]
     constraints: Constraints
-    pairs: Sequence[Pair]
+    kinematics: Sequence[Kinematics]
     operator: Operator
     restraint: Restraint
     springs: FreeModeSprings
     stiffness: Operator
     motions: NDArray[np.float64]
     unit: float = 0.0
-    kinematics: Sequence[Kinematics] | None = None
     own: frozenset[str] = frozenset()
     integration: TimeIntegration | None = None
+
+    @property
+    def pairs(self) -> list[Pair]:
+        return [kind.pair for kind in self.kinematics]
+
+    @property
+    def constant(self) -> bool:
+        """As in ``Problem``."""
+        return self.stiffness is not None
 
     @property
     def n_free(self) -> int:

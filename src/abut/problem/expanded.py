@@ -1,4 +1,4 @@
-"""A problem at large displacements, linearised at a state; contact at current positions."""
+"""A problem linearised at a state, at small displacements and at large ones."""
 
 from __future__ import annotations
 
@@ -40,45 +40,62 @@ def expanded(
     factors = weights(problem.model.histories, now.time)
     there = weights(problem.model.histories, before.time) if change.any() else factors
     constraints = problem.constraints.near(now.unknowns, there)
-    began, contacts = problem.values(before), list[ContactNow]()
+    began = problem.values(before)
     motion = problem.motion(now.time, here, problem.rates(before, now.time, here))
     if since is not None:
         began_at = problem.displacement(since).reshape(problem.model.mesh.points.shape)
         motion = replace(motion, since=Since(np.ascontiguousarray(began_at), guessed))
     shares = problem.shares(before, problem.motion(before.time, began, before.rates), motion, frame)
     n = constraints.free.shape[0]
-    assert problem.kinematics is not None
-    for kind, part, placed in zip(problem.kinematics, frame.pairs, problem.placed(now)):
-        contacts.append(kind.at(part, replace(placed, displacement=here[:n]), began[:n]))
-    stiff = [(share.tangent, len(share.force)) for share in shares if share.tangent is not None]
-    bendings = [contact.bending for contact in contacts]
+    contacts = [
+        kind.at(part, replace(placed, displacement=here[:n]), began[:n])
+        for kind, part, placed in zip(problem.kinematics, frame.pairs, problem.placed(now))
+    ]
+    bendings = [contact.bending for contact in contacts if contact.bending is not None]
     bending = reduce(add, bendings) if bendings else None
     whole = added_up([share.force for share in shares], len(here))
+    stiff = [(share.tangent, len(share.force)) for share in shares if share.tangent is not None]
     if change.any():
         moved = [tangent.internal(change[:size]) for tangent, size in stiff]
         whole = whole + added_up(moved, len(here))
         if bending is not None:
             whole[:n] -= bending @ change[:n]
     by_contact = None if bending is None else constraints.reduce(bending)
-    elastic = sum(tangent.reduce(constraints) for tangent, _ in stiff)
-    stiffness = problem.springs.added_to(elastic if by_contact is None else elastic - by_contact)
-    rows = [pair_now.pair.rows for pair_now in contacts]
+    stiffness = problem.stiffness
+    if stiffness is None:
+        elastic = reduce(add, [tangent.reduce(constraints) for tangent, _ in stiff])
+        stiffness = problem.springs.added_to(elastic if by_contact is None else elastic - by_contact)
     if problem.constraints.turns is not None:
-        pushed = sum(pair_now.T @ p for pair_now, p in zip(rows, problem.split(now.multipliers)))
+        pushed = sum(each.pair.rows.T @ p for each, p in zip(contacts, problem.split(now.multipliers)))
         stiffness = stiffness + problem.constraints.turns.bending(now.unknowns, there, whole[:n] - pushed)
     force = constraints.forces(whole)
-    about = _expansion(problem, shares, now.unknowns, here[:n], force, stiffness)
-    operators = [(pair_now.by_position @ constraints.free).tocsr() for pair_now in contacts]
-    pairs = [replace(pair_now.pair, operator=by, gap=pair_now.gap) for pair_now, by in zip(contacts, operators)]
     gap = np.concatenate([np.zeros(0), *(each.gap + each.by_position @ change[:n] for each in contacts)])
-    load = -about.unbalanced
-    return Linearised(
-        now.time, factors, stiffness, load, pairs, stacked(pairs, problem.n_free), gap, problem.motions, problem.restraint,
-        load, unit_of(stiffness), about=about if not pairs else replace(about, symmetric=False),
-        pushing=sp.vstack([pair_now @ constraints.free for pair_now in rows]).tocsr() if rows else None,
-        forgotten=_idle(contacts), bending=by_contact, shares=problem.named(shares),
-        sizes=problem.sizes(shares, (before, now), stiffness),
+    near = Linearised(
+        now.time, factors, stiffness, force, [each.pair for each in contacts], problem.operator, gap, problem.motions,
+        problem.restraint, force, problem.unit or unit_of(stiffness), forgotten=_idle(contacts), bending=by_contact,
+        shares={} if problem.constant else problem.named(shares), sizes=problem.sizes(shares, (before, now), stiffness),
+        even=problem.constraints.others is None or all(share.symmetric for share in shares),
     )  # fmt: skip
+    if not problem.model.finite:
+        return _about_rest(problem, near, now.unknowns)
+    operators = [(each.by_position @ constraints.free).tocsr() for each in contacts]
+    pairs = [replace(each.pair, operator=by, gap=each.gap) for each, by in zip(contacts, operators)]
+    about = _expansion(problem, shares, now.unknowns, here[:n], force, stiffness)
+    rows = [each.pair.rows @ constraints.free for each in contacts]
+    return replace(
+        near, load=-about.unbalanced, forces=-about.unbalanced, pairs=pairs, operator=stacked(pairs, problem.n_free),
+        about=about if not pairs else replace(about, symmetric=False), pushing=sp.vstack(rows).tocsr() if rows else None,
+    )  # fmt: skip
+
+
+def _about_rest(problem: Discretised, near: Linearised, unknowns: Array) -> Linearised:
+    """At small displacements all is told from rest on, where forces of a constant problem have no rounding. near: with the
+    forces, and gaps, at ``unknowns`` (n_free,)."""
+    load = -near.load
+    if not problem.constant:
+        load = near.stiffness @ unknowns - near.load - problem.springs.forces(unknowns)
+    offset = near.offset - near.operator @ unknowns if len(near.offset) else near.offset
+    return replace(near, load=load, forces=load, offset=offset)
 
 
 def _expansion(

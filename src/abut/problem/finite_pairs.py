@@ -66,7 +66,7 @@ def finite_pair(model: Model, contact: Contact, constraints: Constraints) -> Pai
     rows = (seen.transfer.T @ coupling.operator).tocsr()
     made = Pair(
         contact, contactor, target, coupling, space, rows, (rows @ constraints.free).tocsr(),
-        prescribed=rows @ constraints.prescribed, gap=seen.transfer.T @ coupling.gap,
+        gap=seen.transfer.T @ coupling.gap,
         scale=space.weight * size / both.young, size=size, stiffness=both.young / size,
         index=np.arange(n)[:, None], components=(space,), compliance=both.compliance,
         carried=held(space, contactor, constraints), moving=moving,

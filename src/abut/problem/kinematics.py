@@ -1,9 +1,10 @@
-"""How a contact pair is looked at where its bodies are: contacts (``Current``) and ties (``CurrentTie``) alike."""
+"""How a pair is looked at: where its bodies were (``Reference``), or where they are, contacts (``Current``) and ties across
+a gap (``TurningTie``)."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,38 +33,44 @@ class Placed:
 class ContactNow:
     """A pair at a state. pair: with surfaces, rows (of the forces) and weights as they are now; gap: (n,) weighted gaps and
     slips; by_position: (n, dim n_points) their derivative; bending: (dim n_points, dim n_points) derivative of the contact
-    forces; without_history: (n_functions,) whose slip does not count."""
+    forces, None where they go on as they are; without_history: (n_functions,) whose slip does not count."""
 
     pair: Pair
     gap: Array
     by_position: Sparse
-    bending: Sparse
+    bending: Sparse | None
     without_history: NDArray[np.bool_]
 
 
-class Kinematics(Protocol):
+@dataclass(frozen=True)
+class Kinematics(ABC):
     """Of one pair. pair: undeformed."""
 
-    @property
-    def pair(self) -> Pair: ...
+    pair: Pair
 
+    @abstractmethod
     def frame(self, known: ContactHistory, before: Placed, near: Placed | None) -> PairFrame:
         """What is fixed during the step from the converged state ``before``, which remembers ``known``. near: where the step
         is expected to end, None where there is no guess."""
-        ...
 
     def settled(self, frame: PairFrame, before: Placed, end: Placed) -> PairFrame:
         """The frame that belongs to the end of a step in ``frame``; the same object where that one serves as well."""
-        ...
+        return frame
 
+    def ended(self, was: ContactHistory, known: ContactHistory, before: Placed) -> PairFrame:
+        """The frame of a step from the converged state ``before``, which remembers ``was``, to one that remembers
+        ``known``."""
+        return PairFrame(was.past, known.inner, known.following, known.fit)
+
+    @abstractmethod
     def at(self, frame: PairFrame, now: Placed, before: Array) -> ContactNow:
         """The pair ``now``, during a step that began with displacements ``before`` (dim n_points,)."""
-        ...
 
+    @abstractmethod
     def touching(self, rest: Placed, frame: PairFrame) -> NDArray[np.bool_]:
         """(n,) multipliers that are closed at the outset."""
-        ...
 
     def past(self, displacement: Array, closed: NDArray[np.bool_]) -> Past | None:
-        """From where the next step's slip counts, of a converged state; None without friction."""
-        ...
+        """From where the next step's slip counts, of a converged state; None without friction, and where slips are jumps,
+        which displacements tell."""
+        return None

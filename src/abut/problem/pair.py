@@ -71,9 +71,8 @@ class Moving:
 class Pair:
     """One contact pair on the free displacements.
 
-    operator: (n, n_free) sparse; prescribed: (n, n_histories) change of the gap by prescribed displacements and offsets that
-    follow a history, theory (F9); gap: (n,) weighted geometric gap with the constant offset; scale: (n,) weighted gap per
-    pressure, weight h / E.
+    operator: (n, n_free) sparse; gap: (n,) weighted geometric gap, theory (F9), without offsets; scale: (n,) weighted gap
+    per pressure, weight h / E.
     size: typical facet length; stiffness: E / size, pressure per length. index: (n_functions, c) the multiplier of each
     function of ``space`` and component, -1 where there is none; components: the space of each component's multipliers, in
     turn. Ties have all components (c = dim), along the axes, and a gap of zero; else c = 1, along the contactor's normal,
@@ -87,7 +86,6 @@ class Pair:
     space: PressureSpace
     rows: Sparse  # (n, dim n_points): operator on all displacements
     operator: Sparse
-    prescribed: NDArray[np.float64]
     gap: NDArray[np.float64]
     scale: NDArray[np.float64]
     size: float

@@ -9,15 +9,16 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.problem import affine, fluid_frames, load_steps
+from abut.problem import fluid_frames, load_steps
 from abut.problem.contact_pairs import with_plain_functions
 from abut.problem.discretised import Discretised, stacked
 from abut.problem.expanded import expanded
 from abut.problem.frame import Frame
 from abut.problem.laws import LawRows
 from abut.problem.linearised import Linearised
+from abut.problem.pair import Pair
 from abut.problem.sample_gaps import apart
-from abut.solution.state import ContactHistory, State, at_rest
+from abut.solution.state import State, at_rest
 
 Laws = Callable[[Linearised, State], Sequence[LawRows]]
 
@@ -77,50 +78,40 @@ class ContactProblem(Discretised):
     """Bodies, loads and contact on the free displacements, looked at where bodies were (small displacements), or where they
     are: then all of it is linearised at every state."""
 
-    @property
-    def constant(self) -> bool:
-        """As in ``Problem``."""
-        return self.stiffness is not None
-
     def start(self) -> State:
         """As in ``Problem``: zero displacement; multipliers that touch at the outset are closed, theory (V6)."""
         rest = at_rest(self.n_free, int(self.operator.shape[0]))
         if self.integration is not None:
             rest = replace(rest, rates=self.integration.begins(self.model.dofs.size))
-        return rest.with_closed(affine.touching(self)) if self.kinematics is None else load_steps.started(self, rest)
+        return load_steps.started(self, rest)
 
     def frame(self, before: State, guess: State | None = None) -> Frame:
         """As in ``Problem``."""
-        frame = affine.frame(self, before) if self.kinematics is None else load_steps.begun(self, before, guess)
-        return fluid_frames.begun(self, frame, before)
+        return fluid_frames.begun(self, load_steps.begun(self, before, guess), before)
 
     def settled(self, before: State, frame: Frame, end: State) -> Frame:
         """The frame that belongs to the end of a step in ``frame``; the same object where that one serves as well."""
-        here = frame if self.kinematics is None else load_steps.settled(self, before, frame, end)
-        return fluid_frames.spread(self, here, end)
+        return fluid_frames.spread(self, load_steps.settled(self, before, frame, end), end)
 
     def ended(self, state: State) -> Frame:
         """The frame in which a converged state ended, slips counted from there on."""
-        frame = affine.frame(self, state) if self.kinematics is None else load_steps.ended(self, state, state)
-        return fluid_frames.begun(self, frame, state)
+        return fluid_frames.begun(self, load_steps.ended(self, state, state), state)
 
     def handed(self, state: State, old: Frame, new: Frame) -> State:
         """A state whose functions follow others in a new frame, with the pressures and tractions that they had; the same
         object where none do."""
-        return state if self.kinematics is None else load_steps.handed(self, state, old, new)
+        return load_steps.handed(self, state, old, new)
 
     def linearise(
         self, before: State, frame: Frame, now: State, since: State | None = None, guessed: bool = False
     ) -> Linearised:
         """As in ``Problem``; since: from which an iteration, or a guess, led to ``now``, theory (D24). A
         constant problem is affine everywhere: it is expanded about zero displacement, whose forces have no rounding."""
-        if self.kinematics is not None:
-            here = self.values(now)
-            return expanded(self, before, frame, now, here, np.zeros_like(here), since, guessed)
         if self.constant:
             rest = np.zeros(self.n_free)
             before, now = replace(before, unknowns=rest), replace(now, unknowns=rest)
-        return affine.linearised(self, before, frame, now)
+        here = self.values(now)
+        return expanded(self, before, frame, now, here, np.zeros_like(here), since, guessed)
 
     def ahead(self, before: State, frame: Frame, time: float) -> Linearised:
         """The problem near the converged state ``before``, with what is prescribed at another time: theory (G10)."""
@@ -132,11 +123,7 @@ class ContactProblem(Discretised):
         history = before.history
         for name, share in system.shares.items():
             history = history.with_term(name, share.history)
-        slips = affine.slips(self, before, frame, now, system)
-        if self.kinematics is not None:
-            contacts = load_steps.remembered(self, before, frame, now, slips)
-        else:
-            contacts = {name: ContactHistory(slips=values) for name, values in slips.items()}
+        contacts = load_steps.remembered(self, before, frame, now, system)
         rates = self.rates(before, now.time, self.values(now))
         return replace(now, history=replace(history, contacts=contacts, drag=None), rates=rates and rates.converged)
 
@@ -148,7 +135,7 @@ class ContactProblem(Discretised):
 
     def again(self, before: State, state: State) -> Linearised:
         """As in ``Problem``."""
-        frame = affine.frame(self, before) if self.kinematics is None else load_steps.ended(self, before, state)
+        frame = load_steps.ended(self, before, state)
         return self.linearise(before, fluid_frames.begun(self, frame, state), state)
 
     def restrict(self, state: State) -> State:
@@ -164,7 +151,12 @@ class ContactProblem(Discretised):
         ]
         if all(new is old for new, old in zip(pairs, self.pairs)):
             return self
-        return replace(self, pairs=pairs, operator=stacked(pairs, self.n_free))
+        return self.with_pairs(pairs)
+
+    def with_pairs(self, pairs: Sequence[Pair]) -> ContactProblem:
+        """The same with others of the same surfaces."""
+        kinematics = [replace(kind, pair=pair) for kind, pair in zip(self.kinematics, pairs)]
+        return replace(self, kinematics=kinematics, operator=stacked(pairs, self.constraints.free.shape[1]))
 
     def alone_at_edges(self, closed: NDArray[np.bool_], state: State | None = None) -> NDArray[np.bool_]:
         """As in ``Problem``."""

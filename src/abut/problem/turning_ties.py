@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from abut.cells import MAX_FACET_NODES
 from abut.contact.coupling import CouplingOptions
 from abut.contact.moving_normals import MovingNormals, NormalPattern, normal_pattern
-from abut.contact.slip_points import Past, SlipPoints
+from abut.contact.slip_points import SlipPoints
 from abut.mesh.surface import Surface
 from abut.problem.frame import PairFrame
 from abut.problem.kinematics import ContactNow, Placed
 from abut.problem.pair import Pair
-from abut.solution.state import ContactHistory
+from abut.problem.reference import Reference
 from abut.types import Sparse
 
 CLOSED = 1e-9  # gap over the facet size from which down a tie is as good as closed
@@ -24,64 +24,32 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class TurningTie:
-    """A tie across a gap. pattern: of the contactor's m nodal normals; across: (n, dim m), weighted gaps along
-    them; at_rest: (dim m,) normals at the outset."""
+class TurningTie(Reference):
+    """Of a tie across a gap: it holds surfaces together as they were at the outset. pattern: of the
+    contactor's m nodal normals; across: (n, dim m), weighted gaps along them; at_rest: (dim m,) normals at the outset."""
 
-    pair: Pair
     pattern: NormalPattern
     across: Sparse
     at_rest: Array
 
-    def at(self, displacement: Array) -> tuple[Array, Sparse]:
-        """Weighted jumps (n,) at a displacement (dim n_points,), and their derivative (n, dim n_points)."""
-        normals = self.pattern.at(_moved(self.pair.contactor, displacement))
-        turned = _each(self.pattern, normals) - self.at_rest
-        rows = self.pair.rows - self.across @ normals.turning(len(self.pair.contactor.points))
-        return self.pair.rows @ displacement - self.across @ turned, rows.tocsr()
-
-
-@dataclass(frozen=True)
-class CurrentTie:
-    """As ``Kinematics``, of a tie: it holds surfaces together as they were at the outset. across: what turns with the
-    contactor, None where there are no gaps."""
-
-    pair: Pair
-    across: TurningTie | None
-
-    def frame(self, known: ContactHistory, before: Placed, near: Placed | None) -> PairFrame:
-        """As in ``Kinematics``: nothing is."""
-        return PairFrame()
-
-    def settled(self, frame: PairFrame, before: Placed, end: Placed) -> PairFrame:
-        """As in ``Kinematics``."""
-        return frame
-
     def at(self, frame: PairFrame, now: Placed, before: Array) -> ContactNow:
-        """As in ``Kinematics``."""
-        u, pair = now.displacement, self.pair
-        gap, rows = (pair.rows @ u, pair.rows) if self.across is None else self.across.at(u)
-        none = sp.csr_matrix((len(u),) * 2)
-        return ContactNow(replace(pair, rows=rows), gap, rows, none, np.zeros(len(pair.space), dtype=bool))
-
-    def touching(self, rest: Placed, frame: PairFrame) -> NDArray[np.bool_]:
-        """As in ``Kinematics``: all of it."""
-        return np.ones(len(self.pair), dtype=bool)
-
-    def past(self, displacement: Array, closed: NDArray[np.bool_]) -> Past | None:
-        """As in ``Kinematics``."""
-        return None
+        """As in ``Kinematics``: jumps less what turns with the contactor."""
+        pair, found = self.pair, super().at(frame, now, before)
+        normals = self.pattern.at(_moved(pair.contactor, now.displacement))
+        rows = (pair.rows - self.across @ normals.turning(len(pair.contactor.points))).tocsr()
+        gap = found.gap - self.across @ (_each(self.pattern, normals) - self.at_rest)
+        return replace(found, pair=replace(pair, rows=rows), gap=gap, by_position=rows)
 
 
-def turning_tie(pair: Pair, reach: float) -> TurningTie | None:
-    """Of a tie with gaps between its surfaces, at the outset; None where there are none. reach: a length."""
+def current_tie(pair: Pair, reach: float) -> Reference:
+    """Of a tie where bodies are: it turns where there are gaps between its surfaces at the outset. reach: a length."""
     contactor, target, rule = pair.contactor, pair.target, pair.contact.integration
     options = CouplingOptions(rule.rule, rule.points, reach)
     across = None if pair.moving is None else pair.moving.contactor
     points = SlipPoints.of(contactor, target, pair.coupling.degree, options, across)
     apart = _positions(contactor, points.facet, points.own) - _positions(target, points.target_facet, points.other)
     if not len(apart) or np.linalg.norm(apart, axis=1).max() <= CLOSED * pair.size:
-        return None
+        return Reference(pair)
     pattern = normal_pattern(contactor, across)
     normals = pattern.at(contactor)
     mean = np.einsum("qi,qid->qd", points.own, normals.values[points.facet])

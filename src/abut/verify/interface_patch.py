@@ -178,7 +178,7 @@ def _solve(
     """Displacement at all points, (dim n_points,), and pressure with every multiplier in contact and no initial gap."""
     n = len(built)
     rows = Rows(
-        residual=-built.prescribed[:, 0],
+        residual=-(built.rows @ prescribed),
         by_displacement=-built.operator,
         by_pressure=sp.csr_matrix((n, n)),
         decoupled=np.zeros(n, dtype=bool),
