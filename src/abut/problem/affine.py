@@ -51,6 +51,7 @@ def linearised(problem: Discretised, before: State, frame: Frame, now: State) ->
     motion = problem.motion(now.time, here, problem.rates(before, now.time, here))
     shares = problem.shares(before, there, motion, frame)
     factors = weights(problem.model.histories, now.time)
+    n, largest = problem.constraints.free.shape[0], 0.0
     force = problem.constraints.forces(added_up([share.force for share in shares], len(here)))
     if problem.stiffness is not None:
         stiffness, load = problem.stiffness, -force
@@ -58,12 +59,14 @@ def linearised(problem: Discretised, before: State, frame: Frame, now: State) ->
         tangents = [share.tangent.reduce(problem.constraints) for share in shares if share.tangent is not None]
         stiffness = problem.springs.added_to(sum(tangents[1:], tangents[0]))
         load = stiffness @ now.unknowns - force - problem.springs.forces(now.unknowns)
+        largest = max(float(np.abs(share.force[:n]).max(initial=0.0)) for share in shares)
     return Linearised(
         now.time, factors, stiffness, load, problem.pairs, problem.operator, _offset(problem, factors, frame),
         problem.motions, problem.restraint, load, problem.unit or unit_of(stiffness),
         shares={} if problem.stiffness is not None else problem.named(shares),
         sizes=problem.sizes(shares, (before, now), stiffness),
         even=problem.constraints.others is None or all(share.symmetric for share in shares),
+        largest=largest,
     )  # fmt: skip
 
 
