@@ -107,13 +107,14 @@ def _plastic(n: int, cell: str) -> abut.Model:
 
 
 def _rubber(n: int, cell: str) -> abut.Model:
-    """A hard ball in a block of rubber, finite strains."""
+    """A hard ball in a block of rubber, finite strains; the softer side is the contactor, as by abut's own choice."""
     solids = [
         abut.Solid("block", RUBBER, integration=_alike(cell)),
         abut.Solid("ball", HARD, integration=_alike(cell)),
     ]
     model = _hertz(n, cell, DENT, DENTED)
-    return replace(model, solids=solids, kinematics="finite", solve=abut.SolveOptions(steps=STEPS))
+    contacts = [abut.Contact(contactor="block.top", target="ball.round")]
+    return replace(model, solids=solids, contacts=contacts, kinematics="finite", solve=abut.SolveOptions(steps=STEPS))
 
 
 GEOMETRIES: dict[str, Callable[[int, str], abut.Model]] = {

@@ -137,14 +137,14 @@ def points(system: Linearised, flags: NDArray[np.bool_], of_friction: bool = Fal
 
 
 def largest_force(system: Linearised, state: State, internal: Vector, increment: Increment) -> float:
-    """Largest nodal force of stresses (``internal``), of loads and of single multipliers, now or in a step before. Where
-    displacements have been condensed, those that are left see nothing of contact forces that balance each other on a body,
-    as round a press fit."""
+    """Largest nodal force of stresses (``internal``), of loads, of single multipliers and, where materials are not linear,
+    of supports, now or in a step before. Where displacements have been condensed, those that are left see nothing of contact
+    forces that balance each other on a body, as round a press fit."""
     push = system.weight * state.multipliers
     if system.about is not None:
         return max(system.about.reference, float(np.abs(push).max(initial=0.0)), increment.largest.force, NOTHING)
     largest = (float(np.abs(forces).max(initial=0.0)) for forces in (internal, system.load, push))
-    return max(*largest, increment.largest.force, NOTHING)
+    return max(*largest, system.largest, increment.largest.force, NOTHING)
 
 
 def _relative(violation: Vector, largest: float) -> float:

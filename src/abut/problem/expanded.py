@@ -70,11 +70,12 @@ def expanded(
         stiffness = stiffness + problem.constraints.turns.bending(now.unknowns, there, whole[:n] - pushed)
     force = constraints.forces(whole)
     gap = np.concatenate([np.zeros(0), *(each.gap + each.by_position @ change[:n] for each in contacts)])
+    largest = 0.0 if problem.constant else max(float(np.abs(share.force[:n]).max(initial=0.0)) for share in shares)
     near = Linearised(
         now.time, factors, stiffness, force, [each.pair for each in contacts], problem.operator, gap, problem.motions,
         problem.restraint, force, problem.unit or unit_of(stiffness), forgotten=_idle(contacts), bending=by_contact,
         shares={} if problem.constant else problem.named(shares), sizes=problem.sizes(shares, (before, now), stiffness),
-        even=problem.constraints.others is None or all(share.symmetric for share in shares),
+        even=problem.constraints.others is None or all(share.symmetric for share in shares), largest=largest,
     )  # fmt: skip
     if not problem.model.finite:
         return _about_rest(problem, near, now.unknowns)

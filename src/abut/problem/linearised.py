@@ -70,7 +70,8 @@ class Linearised:
     rows: F^T p with ``pushing`` F (n, n_free); bending: (n_free, n_free) their derivative, which K has with opposite sign;
     forgotten: (n,) multipliers of friction without a past, which carry nothing; shares: of the terms by name, without their
     tangents, none where the problem is constant; sizes: (n_free,) what residuals are judged against where there are fields
-    beside displacements; even: the stiffness is symmetric.
+    beside displacements; even: the stiffness is symmetric; largest: nodal force of a term that is not constant, of all
+    displacements, so that bodies that supports alone move are judged against their reactions (theory (D13)).
     """
 
     time: float
@@ -92,6 +93,7 @@ class Linearised:
     shares: Mapping[str, Share] = field(default_factory=dict)
     sizes: Vector | None = None
     even: bool = True
+    largest: float = 0.0
 
     def __len__(self) -> int:
         """Number of multipliers."""
