@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 import abut
 from abut.bodies.mass import mass
@@ -202,3 +203,55 @@ def test_what_has_no_mass_is_told():
     for count in (0, True, 2.5):
         with pytest.raises(InputError, match="whole number"):
             abut.Frequencies(count=count)
+
+
+def row(*wanted: abut.Frequencies) -> abut.Model:
+    """Two slender beams in a row along x, clamped at their far ends and pressed on each other by P = 1.2 E I / L^2."""
+    length, height = 100.0, 5.0
+    left, right = (make.rectangle([x, x + length], [0, height], cells=[20, 2], cell="quad8") for x in (0.0, length))
+    push = 1.2 * height**2 / 12.0 / length**2 * 2.0 * length
+    return abut.Model(
+        make.join({"left": left, "right": right}),
+        plane="stress",
+        kinematics="finite",
+        solids=[abut.Solid("left", STIFF), abut.Solid("right", STIFF)],
+        supports=[abut.Support("left.left", x=0, y=0), abut.Support("right.right", x=-push, y=0)],
+        contacts=[abut.Contact("right.left", "left.right", "joint")],
+        modes=list(wanted),
+    )
+
+
+def cantilever(load: float, turns: bool, stays: bool) -> float:
+    """First square, over that without load, of a cantilever under P = load E I / L^2 along it at its end (roots of its
+    determinant): turns: as the end does (Beck); stays: acting on the line that the end was on, with a moment P u."""
+
+    def determinant(square: float, k: float) -> float:
+        root = np.sqrt(k * k / 4.0 + square)
+        a, b = np.sqrt(root - k / 2.0), np.sqrt(root + k / 2.0)
+        u = np.array([np.cosh(a) - np.cos(b), np.sinh(a) - a / b * np.sin(b)])
+        slope = np.array([a * np.sinh(a) + b * np.sin(b), a * np.cosh(a) - a * np.cos(b)])
+        moment = np.array([a**2 * np.cosh(a) + b**2 * np.cos(b), a**2 * np.sinh(a) + a * b * np.sin(b)])
+        force = np.array([a**3 * np.sinh(a) - b**3 * np.sin(b), a**3 * np.cosh(a) + a * b**2 * np.cos(b)])
+        moment, force = moment + k * u * stays, force + k * slope * (not turns)
+        return float(moment[0] * force[1] - moment[1] * force[0])
+
+    first = [brentq(determinant, 3.0, 25.0, args=(k,)) for k in (1e-9, load)]
+    return first[1] / first[0]
+
+
+def test_bars_in_a_row_slide_on_each_other_and_vibrate_apart():
+    """Pressed: they slide on each other, and what presses them turns with their faces and stays where these overlap. Open:
+    stresses alone soften them. At the start: nothing does. Shear and the change of length count 1 %."""
+    apart, start = abut.Frequencies(2, open=["joint"]), abut.Frequencies(2, time=0.0)
+    solution = abut.solve(row(abut.Frequencies(1), apart, start))
+    assert all(check.passed for check in solution.certificate)
+    pressed, opened, unloaded = (result.eigenvalues for result in solution.modes)
+    np.testing.assert_allclose(opened / unloaded, cantilever(1.2, False, False), rtol=0.01)
+    np.testing.assert_allclose(pressed / unloaded[:1], cantilever(1.2, True, True), rtol=0.01)
+    alone = (CLAMPED[0] * np.sqrt(YOUNG / DENSITY * 5.0**2 / 12.0) / 100.0**2) ** 2
+    np.testing.assert_allclose(unloaded, alone, rtol=0.01)
+
+
+def test_what_is_open_is_a_contact():
+    with pytest.raises(InputError, match="did you mean 'joint'"):
+        abut.solve(row(abut.Frequencies(1, open=["joit"])))

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from abut.bodies.stress_stiffness import stress_stiffness
 from abut.errors import InputError, nearest
 from abut.model import Buckling, Frequencies, Harmonic, Model, Transient
@@ -24,7 +26,7 @@ from abut.problem.constraints import Constraints
 from abut.problem.linearised import Linearised
 from abut.problem.problem import ContactProblem
 from abut.solution import ModesResult, ResponseResult
-from abut.solution.state import State
+from abut.solution.state import OPEN, State
 from abut.types import Sparse
 
 
@@ -41,6 +43,7 @@ def check_modes(model: Model, team: bool) -> None:
             )
         if isinstance(wanted, Frequencies):
             densities(model)
+            _check_open(model, wanted)
     if model.connectors:
         raise InputError(
             "modes: frequencies and buckling loads of assemblies with connectors are not known; leave one out"
@@ -54,31 +57,65 @@ def check_modes(model: Model, team: bool) -> None:
         )
 
 
+def _check_open(model: Model, wanted: Frequencies) -> None:
+    known = [contact.name for contact in model.contacts]
+    for name in wanted.open:
+        if name not in known:
+            raise InputError(f"frequencies: open: no contact named '{name}'{nearest(str(name), known)}")
+
+
 @dataclass(frozen=True)
 class Reached:
     """A converged state as vibrations see it. before, state: at the begin and the end of its step; problem, system: there;
-    near: the linear change of variables; there: stiffness and contact; stressed: stiffness that stresses add, (dim n_points,
-    dim n_points), None where the tangent has it; spins: of rotation."""
+    near: the linear change of variables; stressed: stiffness that stresses add, (dim n_points, dim n_points), None where the
+    tangent has it; spins: of rotation; apart: contacts that hold nothing."""
 
     problem: ContactProblem
     before: State
     state: State
     system: Linearised
     near: Constraints
-    there: Held
     stressed: Sparse | None
     spins: Sparse
+    apart: frozenset[str] = frozenset()
 
     @classmethod
     def of(cls, assembled: Assembled, before: State, attempt: Attempt) -> Reached:
         """before: the state that the attempt, which converged, began with."""
-        state, problem = attempt.state, assembled.problem
+        problem = assembled.problem
         own = problem.with_ordinary(attempt.inside) if attempt.inside.any() else problem
-        system = own.again(before, state)
+        return cls._of(assembled, own, before, attempt.state)
+
+    @classmethod
+    def at_start(cls, assembled: Assembled) -> Reached:
+        """Before anything acts."""
+        start = assembled.problem.start()
+        return cls._of(assembled, assembled.problem, start, start)
+
+    @classmethod
+    def _of(cls, assembled: Assembled, own: ContactProblem, before: State, state: State) -> Reached:
+        problem, system = assembled.problem, own.again(before, state)
         near = problem.constraints.near(state.unknowns, system.factors)
         stressed = _stressed(assembled, state) if problem.model.small_strains else None
-        spins = spin_softening(problem.model, state.time)
-        return cls(own, before, state, system, near, held(own, system, state), stressed, spins)
+        return cls(own, before, state, system, near, stressed, spin_softening(problem.model, state.time))
+
+    def as_in(self, wanted: Frequencies | Buckling) -> Reached:
+        """With the contacts open that hold nothing in these modes, which before anything acts are all but ties. Where bodies
+        have moved, what presses them is gone from the stiffness, too, which it changes as it turns with them."""
+        idle = (pair.contact.name for pair in self.problem.pairs if not (self.state.time or pair.two_way))
+        apart = frozenset(wanted.open if isinstance(wanted, Frequencies) else ()).union(idle)
+        if not apart:
+            return self
+        every = [np.full(len(pair), pair.contact.name in apart) for pair in self.problem.pairs]
+        gone = np.concatenate(every)
+        pressed, status = np.where(gone, 0.0, self.state.multipliers), np.where(gone, OPEN, self.state.status)
+        state = replace(self.state, multipliers=pressed, status=status)
+        return replace(self, state=state, system=self.problem.again(self.before, state), apart=apart)
+
+    @property
+    def there(self) -> Held:
+        """Stiffness and contact, but for what the state adds."""
+        return held(self.problem, self.system, self.state, self.apart)
 
     def added(self, wanted: Frequencies) -> Sparse | None:
         """What the state adds to the stiffness of a linear body, or to the tangent of one at large displacements."""
@@ -101,16 +138,18 @@ def modes(
     Raises InputError, ConvergenceError and SingularModelError."""
     model = assembled.problem.model
     there = {time: Reached.of(assembled, *end) for time, end in ends.items()}
+    if any(wanted.time == 0.0 for wanted in model.modes):
+        there[0.0] = Reached.at_start(assembled)
     found: list[tuple[Frequencies | Buckling, ModesResult]] = []
     for wanted in model.modes:
         if isinstance(wanted, (Frequencies, Buckling)) and wanted.time in there:
-            found += [(wanted, result) for result in _found(there[wanted.time], wanted)]
+            found += [(wanted, result) for result in _found(there[wanted.time].as_in(wanted), wanted)]
     answers = []
     for wanted in model.modes:
         if isinstance(wanted, (Harmonic, Transient)) and wanted.time in there:
             made_of, result = next((w, r) for w, r in found if basis_of(w, wanted) and not r.diameter)
             assert isinstance(made_of, Frequencies)
-            at = there[wanted.time]
+            at = there[wanted.time].as_in(made_of)
             answers.append(respond(model, at.near, at.tight(made_of), result, places, wanted))
     return tuple(result for _, result in found), tuple(answers)
 
@@ -121,26 +160,24 @@ def _found(at: Reached, wanted: Frequencies | Buckling) -> tuple[ModesResult, ..
         return (buckling(at.problem.model, at.near, at.there, at.stressed, wanted),)
     around = tuple(diameter for diameter in wanted.diameters if diameter)
     alike = (_one(at, wanted),) if len(around) < len(wanted.diameters) else ()
-    return alike + (_around(at.problem, at.before, at.state, at.added(wanted), wanted, around) if around else ())
+    return alike + (_around(at, wanted, around) if around else ())
 
 
 def _one(at: Reached, wanted: Frequencies) -> ModesResult:
     tight = at.tight(wanted)
     if wanted.complex:
-        slides = sliding(at.system, at.state, at.there)
+        slides = sliding(at.system, at.state, tight)
         return complex_frequencies(at.problem.model, at.near, tight, slides, wanted)
     return frequencies(at.problem.model, at.near, tight, wanted)
 
 
-def _around(
-    problem: ContactProblem, before: State, state: State, added: Sparse | None, wanted: Frequencies,
-    diameters: Sequence[int],
-) -> tuple[ModesResult, ...]:  # fmt: skip
+def _around(at: Reached, wanted: Frequencies, diameters: Sequence[int]) -> tuple[ModesResult, ...]:
     """Frequencies with nodal diameters."""
+    problem, added = at.problem, at.added(wanted)
     apart = sides(problem.model, problem.constraints, wanted.side)
     wide = apart.problem(problem)
-    there = apart.state(state)
-    tight = held(wide, wide.again(apart.state(before), there), there)
+    there = apart.state(at.state)
+    tight = held(wide, wide.again(apart.state(at.before), there), there, at.apart)
     if added is not None:
         tight = _stiffened(tight, apart.constraints.reduce(added))
     return cyclic_frequencies(problem.model, apart, tight, wanted, diameters)

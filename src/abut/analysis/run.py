@@ -195,7 +195,7 @@ class Run:
 
     def vibrate(self) -> None:
         """What the model asks for about the states at ends of steps, if all are there."""
-        if not self.looked or not all(step.converged for step in self.steps):
+        if not self.model.modes or not all(step.converged for step in self.steps):
             return
         self.told.observe(Phase("frequencies and buckling"))
         self.modes, self.responses = modes(self.assembled, self.looked, self.places)

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from abut.decks.modes import time_of
 from abut.io.deck.reasons import DeckError
 from abut.io.deck.record import Amplitude, Deck, Step
 from abut.io.deck.response_cards import Shaking
@@ -92,18 +93,19 @@ def responses(
     result: list[Harmonic | Transient] = []
     if deck.modes is None:
         return result
+    time = time_of(deck, deck.modes.asked[-1])
     for one, step, shaking in zip(alone, steps, deck.modes.shaking):
-        shift, damping = base(deck, step, shaking), shaking.damping(deck.modes.count)
+        shift, damping = base(deck, step, shaking), shaking.damping(deck.modes.asked[-1].count)
         found = loads(_part(one, False))
         if shaking.between is None:
-            result.append(Transient(shaking.period, found, shaking.steps, damping or 0.0, shaking.rayleigh))
+            result.append(Transient(shaking.period, found, shaking.steps, damping or 0.0, shaking.rayleigh, time=time))
             continue
         ahead = loads(_part(one, True))
         result.append(
             Harmonic(
                 shaking.between, [replace(load, amplitude=None) for load in found],
                 [replace(load, amplitude=None) for load in ahead], shift[:dim] if shift else None,
-                points=shaking.points, bias=shaking.bias, damping=damping or 0.0, rayleigh=shaking.rayleigh,
+                points=shaking.points, bias=shaking.bias, damping=damping or 0.0, rayleigh=shaking.rayleigh, time=time,
             )
         )  # fmt: skip
     return result

@@ -128,9 +128,8 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     prescribed = _prescribed(deck, groups, parts, plane, references, modulus, notes, reasons)
     asked = tables(deck, groups, notes)
     every_load = partial(_response_loads, groups=groups, parts=parts, plane=plane, references=references)
-    vibrations = _vibrations(
-        deck, groups, partial(responses, deck, alone, shaken, 2 if plane else 3, every_load), reasons
-    )
+    shaking = partial(responses, deck, alone, shaken, 2 if plane else 3, every_load)
+    vibrations = _vibrations(deck, groups, [contact.name for contact in contacts], shaking, reasons)
     reasons.tell()
     mesh = build(Mesh, groups.raw(), deck.path)
     notes += mesh.notes
@@ -191,12 +190,14 @@ def _response_loads(
 
 
 def _vibrations(
-    deck: Deck, groups: Groups, shaken: Callable[[], Sequence[Wanted]], reasons: Reasons
+    deck: Deck, groups: Groups, contacts: Sequence[str], shaken: Callable[[], Sequence[Wanted]], reasons: Reasons
 ) -> tuple[Wanted, ...]:
     """Modes, and what is made of them."""
     result: tuple[Wanted, ...] = ()
+    if len(contacts) < len(deck.pairs):  # some are refused
+        return result
     with reasons.gathered():
-        result = (*modes(deck, groups), *shaken())
+        result = (*modes(deck, groups, contacts), *shaken())
     return result
 
 

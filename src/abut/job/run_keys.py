@@ -15,7 +15,8 @@ RUN: dict[str, dict[str, str]] = {
         "sectors": "how many sectors like the modelled one make up the whole turn, where there are other diameters than 0",
         "side": "the node set on one side of the sector whose equations join it to the other side, turned by one sector; "
         "all equations between it and other nodes are taken as such",
-        "time": AT,
+        "time": f"{AT}; 0, or start: of the model before anything acts, all contacts but ties open",
+        "open": "contacts that hold nothing in the vibrations, though they press in the state",
     },
     "BucklingTable": {"count": "how many positive factors, from the smallest", "time": AT},
     "HarmonicTable": {

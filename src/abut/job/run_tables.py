@@ -15,7 +15,7 @@ from abut.model.solve_options import LINEAR, SolveOptions
 from abut.model.step_choice import WORDS as STEPS
 from abut.output.options import COMPRESSIONS, FAST, FIELDS, FORMATS, USUAL, VTU
 
-FREQUENCIES = table_of(Frequencies, {"diameters": list[int], "time": Time})
+FREQUENCIES = table_of(Frequencies, {"diameters": list[int], "time": Time, "open": list[str]})
 BUCKLING = table_of(Buckling, {"time": Time})
 LOADS = list[Annotated[Table, LOAD]]
 NUMBERS = list[Number]

@@ -40,7 +40,10 @@ class Frequencies:
         The node set on one side of the sector whose equations say that it moves as the other side does, turned by one
         sector. Every equation between these nodes and others is taken to be one of those.
     time : float
-        Of the state, in (0, 1], where a load step then ends.
+        Of the state, in [0, 1], where a load step then ends. 0: of the model as it is before anything acts, all contacts
+        but ties open.
+    open : sequence of str
+        Contacts that hold nothing in the vibrations, though they press in the state.
 
     Raises
     ------
@@ -61,10 +64,12 @@ class Frequencies:
     sectors: float = 0.0
     side: str = ""
     time: float = 1.0
+    open: Sequence[str] = ()
 
     def __post_init__(self) -> None:
         _check_count(self.count, "frequencies")
-        check_time(self.time, "frequencies")
+        check_time(self.time, "frequencies", start=True)
+        object.__setattr__(self, "open", checks.listed(self.open, "frequencies: open", "names of contacts"))
         for name, value in (("stiffening", self.stiffening), ("complex", self.complex)):
             if not isinstance(value, bool):
                 raise InputError(f"frequencies: {name}: expected true or false, got {value!r}")
@@ -135,15 +140,17 @@ class Buckling:
         return turn_at(self.time)
 
 
-def check_time(time: object, name: str) -> None:
-    """Raise InputError for what is no time of a loaded state."""
-    if isinstance(time, bool) or not isinstance(time, (int, float)) or not 0.0 < time <= 1.0:
-        raise InputError(f"{name}: time: expected a time after the start, up to the end, got {time!r}")
+def check_time(time: object, name: str, start: bool = False) -> None:
+    """Raise InputError for what is no time of a loaded state; ``start``: that of the unloaded one is among them."""
+    if isinstance(time, bool) or not isinstance(time, (int, float)) or not 0.0 <= time <= 1.0:
+        raise InputError(f"{name}: time: expected a time from the start to the end, got {time!r}")
+    if not (start or time):
+        raise InputError(f"{name}: time: expected a time after the start, where nothing acts yet, got {time!r}")
 
 
 def turn_at(time: float) -> tuple[History, ...]:
-    """A history with a corner at a time before the end, none for the end."""
-    return (Amplitude(((0.0, 0.0), (time, 0.0), (1.0, 1.0))),) if time < 1.0 else ()
+    """A history with a corner at a time between start and end, none for these."""
+    return (Amplitude(((0.0, 0.0), (time, 0.0), (1.0, 1.0))),) if 0.0 < time < 1.0 else ()
 
 
 def _check_count(count: object, name: str) -> None:

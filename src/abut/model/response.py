@@ -117,7 +117,7 @@ class Harmonic:
     time: float = 1.0
 
     def __post_init__(self) -> None:
-        check_time(self.time, "harmonic")
+        check_time(self.time, "harmonic", start=True)
         between = vector(self.between, "harmonic: between")
         if len(between) != 2 or not 0.0 <= between[0] <= between[1] or not between[1]:
             raise InputError(f"harmonic: between: expected two frequencies 0 <= first <= last > 0, got {list(between)}")
@@ -202,7 +202,7 @@ class Transient:
     time: float = 1.0
 
     def __post_init__(self) -> None:
-        check_time(self.time, "transient")
+        check_time(self.time, "transient", start=True)
         object.__setattr__(self, "period", checks.positive(self.period, "transient: period"))
         object.__setattr__(self, "loads", _loads(self.loads, "transient: loads"))
         if not self.loads:

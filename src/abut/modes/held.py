@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,9 +35,10 @@ class Held:
     kept: NDArray[np.int64]
 
 
-def held(problem: ContactProblem, system: Linearised, state: State) -> Held:
+def held(problem: ContactProblem, system: Linearised, state: State, apart: Collection[str] = ()) -> Held:
     """Of a problem near a converged state, theory (J2). Closed contact is held along its normals, sticking in all
-    directions, ties in all; what slips is free along its surface; contact with a law of its own gives way as that says."""
+    directions, ties in all; what slips is free along its surface; contact with a law of its own gives way as that says.
+    apart: contacts of which nothing is held."""
     own = problem.springs
     artificial = sp.csr_matrix((own.stiffness, (own.columns, own.columns)), shape=system.stiffness.shape)
     stiffness = (system.stiffness - artificial).tocsr()
@@ -45,7 +47,9 @@ def held(problem: ContactProblem, system: Linearised, state: State) -> Held:
     parts = zip(system.pairs, *map(system.split, (system.gap(state), state.multipliers, state.closed, state.slipping)))
     for pair, gap, multipliers, closed, slipping in parts:
         law = pair.contact.law
-        if pair.smooth and not (pair.frictional or isinstance(law, str)):
+        if pair.contact.name in apart:
+            here, soft = np.zeros(len(pair), dtype=bool), np.zeros(len(pair))
+        elif pair.smooth and not (pair.frictional or isinstance(law, str)):
             here, soft = _soft(pair, law, gap, multipliers, closed)
         else:
             here, soft = _status(pair, closed, slipping), np.zeros(len(pair))

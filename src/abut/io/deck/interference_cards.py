@@ -11,6 +11,7 @@ from abut.errors import nearest
 from abut.io.deck.cards import Card, Line, key
 from abut.io.deck.contact_cards import sides
 from abut.io.deck.mesh_cards import MeshCards
+from abut.io.deck.mode_cards import Modes
 from abut.io.deck.reasons import Reasons
 from abut.io.deck.record import Amplitude, Pair, Prescribed, Step
 from abut.io.deck.removed_elements import of_elements
@@ -88,6 +89,22 @@ def _changes(card: Card, scene: Scene) -> Iterator[Prescribed]:
     for line, slave, master in sides(card, scene.mesh):
         number = np.array([_number(line, slave, master, scene.pairs)])
         yield Prescribed("interference", number, (0,), far if card.has("REMOVE") else 0.0, STAYS, line.place)
+
+
+def opened(modes: Modes | None, scene: Scene, reasons: Reasons) -> Modes | None:
+    """With the numbers of the pairs that steps which ask for modes take out."""
+    if modes is None:
+        return None
+    result = []
+    for asked in modes.asked:
+        numbers: list[int] = []
+        with reasons.gathered():
+            for card in asked.removed:
+                numbers += [
+                    _number(line, slave, master, scene.pairs) for line, slave, master in sides(card, scene.mesh)
+                ]
+        result.append(replace(asked, open=tuple(numbers)))
+    return replace(modes, asked=tuple(result))
 
 
 def _number(line: Line, slave: str, master: str, pairs: Sequence[Pair]) -> int:

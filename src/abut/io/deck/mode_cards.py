@@ -6,49 +6,57 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 from abut.io.deck.cards import Card, as_float, key
+from abut.io.deck.reasons import Place
 from abut.io.deck.response_cards import Shaking, parted
 
 PROCEDURES = ("FREQUENCY", "BUCKLE")
+REMOVAL = "MODELCHANGE"
 CHANGES = (
     "BOUNDARY",
     "CLOAD",
     "DLOAD",
     "DSLOAD",
     "TEMPERATURE",
-    "MODELCHANGE",
+    REMOVAL,
     "CHANGEFRICTION",
     "CONTACTINTERFERENCE",
 )
 
 
-# What makes the state after static steps another one than that of the unloaded model, but for stresses
-NOT_LINEAR = ("CONTACTPAIR", "CONTACT", "PLASTIC", "HYPERELASTIC", "MODELCHANGE")
+@dataclass(frozen=True)
+class Asked:
+    """What a step asks for, or several for more nodal diameters. place: of the step; count: how many; after: how many steps
+    with loads come before; loaded: about the state that these end with, else about the model before anything acts;
+    diameters: nodal ones, of each of which there are ``count``; removed: *MODEL CHANGE, by which contacts hold nothing;
+    open: their numbers, once they are known."""
+
+    place: Place
+    count: int
+    after: int
+    loaded: bool
+    diameters: tuple[int, ...] = (0,)
+    removed: tuple[Card, ...] = ()
+    open: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
 class Modes:
-    """What steps ask for beside statics. kind: "FREQUENCY" or "BUCKLE"; count: how many; loaded: about the state after the
-    steps before, stresses included; note: what is done otherwise than the deck says, empty for nothing; diameters: nodal
-    ones, of each of which there are ``count``; shaking: steps at the end whose loads shake what vibrates so;
-    unloaded: at the end of the first step, too, which has no loads."""
+    """What steps ask for beside statics. kind: "FREQUENCY" or "BUCKLE"; asked: how many, and when; notes: what is done
+    otherwise than the deck says; shaking: steps at the end whose loads shake what vibrates so, as the last ones say."""
 
     kind: str
-    count: int
-    loaded: bool
-    note: str = ""
-    diameters: tuple[int, ...] = (0,)
+    asked: tuple[Asked, ...]
+    notes: tuple[str, ...] = ()
     shaking: tuple[Shaking, ...] = ()
-    unloaded: bool = False
 
 
 def without_modes(cards: Sequence[Card], ignore: Collection[str] = ()) -> tuple[tuple[Card, ...], Modes | None]:
     """The cards without what asks for modes, and that; all of them and None where abut finds none such: below a limit of
     frequencies, with loads that a state of its own would need; or ``ignore`` names the card.
 
-    As the only step, or in several of nodal diameters, it becomes a static one: unloaded for frequencies, with its loads for
-    buckling. *FREQUENCY after static steps is about their state with PERTURBATION; without, about the unloaded model, which
-    has the same stiffness where nothing but stresses changes (``NOT_LINEAR``, and no NLGEOM). The first of two is about the
-    end of an unloaded first step. Steps at the end that shake what vibrates are kept as static ones, with their loads."""
+    Where there are no other steps the first becomes a static one, with its loads for buckling. *FREQUENCY with PERTURBATION
+    is about the state that static steps before it end with; without, about the model before anything acts, as in CalculiX.
+    Steps at the end that shake what vibrates are kept as static ones, with their loads."""
     starts = [i for i, card in enumerate(cards) if card.key == "STEP"]
     if not starts:
         return tuple(cards), None
@@ -58,7 +66,7 @@ def without_modes(cards: Sequence[Card], ignore: Collection[str] = ()) -> tuple[
         return _without(cards, list(cards[: starts[0]]), every, ignore)
     steps, shaken, shaking = found
     left, modes = _without(cards, list(cards[: starts[0]]), steps, ignore)
-    if modes is None or modes.kind != "FREQUENCY" or 0 not in modes.diameters:
+    if modes is None or modes.kind != "FREQUENCY" or 0 not in modes.asked[-1].diameters:
         return tuple(cards), None
     return (*left, *(card for step in shaken for card in step)), replace(modes, shaking=shaking)
 
@@ -67,71 +75,74 @@ def _without(
     cards: Sequence[Card], before: list[Card], steps: list[list[Card]], ignore: Collection[str]
 ) -> tuple[tuple[Card, ...], Modes | None]:
     """``without_modes`` of cards before and in steps; all cards and None where abut finds no such modes."""
-    asking = [step for step in steps if any(card.key in PROCEDURES for card in step)]
-    wanted = [_wanted(step, before) for step in asking]
-    left_out = {key(name.lstrip("*")) for name in ignore}
-    first = next((found for found in wanted if found is not None), None)
-    if first is None or any(found is None or found.kind in left_out for found in wanted):
+    asking = [i for i, step in enumerate(steps) if any(card.key in PROCEDURES for card in step)]
+    every = [card for i in asking for card in steps[i] if card.key in PROCEDURES]
+    kinds, left_out = {card.key for card in every}, {key(name.lstrip("*")) for name in ignore}
+    if len(kinds) != 1 or len(every) > len(asking) or kinds & left_out or (kinds == {"BUCKLE"} and len(steps) > 1):
         return tuple(cards), None
-    if len({(found.kind, found.count, found.note) for found in wanted if found is not None}) > 1:
+    asked = _asked(steps, asking, before)
+    if asked is None:
         return tuple(cards), None
-    modes = replace(first, diameters=tuple(dict.fromkeys(d for found in wanted if found for d in found.diameters)))
-    perturbed = [step[0].has("PERTURBATION") for step in asking]
-    changed = {card.key for step in asking for card in step} & set(CHANGES)
-    if len(steps) == len(asking) and not any(perturbed):
-        if (len(steps) == 1 and (modes.kind == "BUCKLE" or changed <= {"BOUNDARY"})) or not changed:
-            return (*before, *map(_as_static, steps[0])), modes
-    elif len(asking) == 1 and modes.kind == "FREQUENCY" and not changed:
-        where = steps.index(asking[0])
-        others = [card for step in steps if step is not asking[0] for card in step]
-        if perturbed[0] and where == len(steps) - 1:
-            return (*before, *others), replace(modes, loaded=True)
-        after = {card.key for step in steps[where + 1 :] for card in step}
-        every = (*before, *others)
-        linear = not any(card.key in NOT_LINEAR or card.has("NLGEOM") or card.has("NONLINEAR") for card in every)
-        if not perturbed[0] and linear and not after & {"BOUNDARY"}:
-            return every, modes
-    elif [steps[0], steps[-1]] == asking and perturbed == [False, True] and modes.kind == "FREQUENCY" and not changed:
-        if any(card.key in ("CONTACTPAIR", "CONTACT") for card in before):
-            return tuple(cards), None  # where bodies just touch without load CalculiX has them apart, abut together
-        start = [_as_large(card, steps[1][0]) for card in map(_as_static, steps[0])]
-        loading = [card for step in steps[1:-1] for card in step]
-        return (*before, *start, *loading), replace(modes, loaded=True, unloaded=True)
-    return tuple(cards), None
+    cyclic = any(card.key == "CYCLICSYMMETRYMODEL" for card in before)
+    notes = [_note(card, cyclic and not _chosen(steps[i])) for i, card in zip(asking, every)]
+    others = [card for i, step in enumerate(steps) if i not in asking for card in step]
+    left = others or map(_as_static, steps[0])
+    return (*before, *left), Modes(every[0].key, asked, tuple(filter(None, notes)))
 
 
-def _as_large(card: Card, after: Card) -> Card:
-    """*STEP of what has no loads, with the displacements, small or large, of the one after it."""
-    if card.key != "STEP" or not after.has("NLGEOM"):
-        return card
-    return replace(card, parameters={**card.parameters, "NLGEOM": after.get("NLGEOM")})
+def _asked(steps: Sequence[Sequence[Card]], asking: Sequence[int], before: Sequence[Card]) -> tuple[Asked, ...] | None:
+    """When and where modes are asked for; None where a step changes what abut does not change, or is about a loaded state
+    that no step before it has."""
+    result: list[Asked] = []
+    alone = len(steps) == len(asking)
+    for number, i in enumerate(asking):
+        step, after = steps[i], i - number
+        loaded, removed = step[0].has("PERTURBATION"), tuple(card for card in step if _removes(card))
+        changed = {card.key for card in step if card not in removed} & set(CHANGES)
+        allowed = set(CHANGES if _of_buckling(step) else ("BOUNDARY",)) if len(steps) == 1 else set()
+        kept = removed and any(j not in asking for j in range(i, len(steps)))  # gone in steps with loads, too
+        count, diameters = _count(next(card for card in step if card.key in PROCEDURES)), _diameters(step, before)
+        if changed - allowed or kept or not count or diameters is None or (loaded and not after and not alone):
+            return None
+        gone = (*(result[-1].removed if result else ()), *removed)
+        if result and result[-1] == replace(result[-1], count=count, after=after, loaded=loaded, removed=gone):
+            diameters = tuple(dict.fromkeys((*result.pop().diameters, *diameters)))
+        result.append(Asked(step[0].place, count, after, loaded, diameters, gone))
+    return tuple(result)
+
+
+def _of_buckling(step: Sequence[Card]) -> bool:
+    """Whether a step asks for buckling loads."""
+    return any(card.key == "BUCKLE" for card in step)
+
+
+def _removes(card: Card) -> bool:
+    """Whether a card takes contacts out."""
+    return card.key == REMOVAL and card.has("REMOVE") and key(card.get("TYPE") or "") == "CONTACTPAIR"
 
 
 def _as_static(card: Card) -> Card:
+    if card.key == "STEP":
+        return replace(
+            card, parameters={name: value for name, value in card.parameters.items() if name != "PERTURBATION"}
+        )
     return Card("STATIC", "*STATIC", {}, (), card.place) if card.key in PROCEDURES else card
 
 
-def _wanted(step: Sequence[Card], before: Sequence[Card]) -> Modes | None:
-    """What a step asks for; None where abut does not find it."""
-    asking = [card for card in step if card.key in PROCEDURES]
-    count = _count(asking[0]) if len(asking) == 1 else None
-    if count is None:
-        return None
-    chosen = [card for card in step if card.key == "SELECTCYCLICSYMMETRYMODES"]
-    models = [card for card in before if card.key == "CYCLICSYMMETRYMODEL"]
-    if not models or asking[0].key != "FREQUENCY" or not chosen:
-        return Modes(asking[0].key, count, False, _note(asking[0], bool(models)))
-    diameters = _diameters(chosen[-1], models)
-    return None if diameters is None else Modes("FREQUENCY", count, False, _note(asking[0], False), diameters)
+def _chosen(step: Sequence[Card]) -> list[Card]:
+    return [card for card in step if card.key == "SELECTCYCLICSYMMETRYMODES"]
 
 
-def _diameters(card: Card, models: Sequence[Card]) -> tuple[int, ...] | None:
+def _diameters(step: Sequence[Card], before: Sequence[Card]) -> tuple[int, ...] | None:
     """From NMIN, 0 where it is left out, to NMAX, or as many as there are; None for what are none."""
+    chosen, models = _chosen(step), [card for card in before if card.key == "CYCLICSYMMETRYMODEL"]
+    if not (chosen and models) or _of_buckling(step):
+        return (0,)
     sectors = {as_float(model.get("N") or "") for model in models}
     size = sectors.pop()
     if sectors or size is None:
         return None
-    texts = [card.get("NMIN") or "0", card.get("NMAX") or str(int(size / 2.0))]
+    texts = [chosen[-1].get("NMIN") or "0", chosen[-1].get("NMAX") or str(int(size / 2.0))]
     if not all(text.strip().isdecimal() for text in texts):
         return None
     lowest, highest = map(int, texts)

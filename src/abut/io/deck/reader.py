@@ -14,7 +14,7 @@ from abut.io.deck.contact_cards import general_contact, pairs
 from abut.io.deck.coupling_cards import couplings
 from abut.io.deck.friction_cards import friction_notes, without_tied_friction
 from abut.io.deck.initial_conditions import initial_stress, initial_temperature
-from abut.io.deck.interference_cards import Scene, with_interferences
+from abut.io.deck.interference_cards import Scene, opened, with_interferences
 from abut.io.deck.mesh_cards import MeshCards, mesh_cards
 from abut.io.deck.mode_cards import without_modes
 from abut.io.deck.model_cards import (
@@ -51,7 +51,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
     notes: list[str] = []
     reasons = Reasons()
     every, modes = without_modes(_cards(path, notes, reasons), ignore)
-    notes += [modes.note] if modes is not None and modes.note else []
+    notes += modes.notes if modes is not None else ()
     sifted = sift(without_tied_friction(every, notes), reasons, ignore)
     if not sifted.plain:
         reasons.tell()
@@ -97,7 +97,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
         thicknesses=nodal_thickness(cards, mesh, reasons),
         normals=normals(cards, mesh, reasons),
         requests=requests(sifted.requests),
-        modes=modes,
+        modes=opened(modes, Scene(mesh, pair_list, known), reasons),
     )
     away = absences(groups, mesh, reasons)
     reasons.tell()

@@ -21,9 +21,9 @@ PROCEDURES = {  # other than *STATIC: what each is, and what to do; ignoring one
     "ELECTROMAGNETICS": ("electromagnetics", "give its forces by *CLOAD, its temperatures by *TEMPERATURE"),
     "FEASIBLE DIRECTION": ("optimisation", _DESIGN),
     "FREQUENCY": (
-        "eigenfrequencies but as the only step, in the last one with *STEP, PERTURBATION (of the loaded state), or beside "
-        "static steps without NLGEOM and contact, and then without loads, upper limit and (but for vibrations) STORAGE=YES",
-        "write the step so, in a deck of its own",
+        "eigenfrequencies with loads in their step, an upper limit, STORAGE=YES (but before vibrations), contacts that "
+        "static steps after it lack, too, or *STEP, PERTURBATION before any static step",
+        "write the step without, or in a deck of its own",
     ),
     "GREEN": ("Green functions", "use *STATIC with each unit force"),
     "HEAT TRANSFER": ("heat transfer", _HEAT),
