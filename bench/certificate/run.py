@@ -1,6 +1,6 @@
 """What the certificate says of contacts with known pressures, beside their true errors.
 
-``python bench/certificate/run.py`` takes 1 716 cases (ten minutes on one core), in shares that may run at once with
+``python bench/certificate/run.py`` takes 1 716 cases (six minutes of processor time), in shares that may run at once with
 ``--share K N --out FILE`` (then ``--sum FILES``). The summary asks of a certificate that runs with a true error above
 20 % are not green, that those below 3 % neither fail (1 %) nor warn (5 %), and that the estimate "pressure error" is
 the true error in the median: of all runs, and apart of the half by which the estimate was tuned, and of the other one.
