@@ -25,7 +25,7 @@ MADE_OF = {
     "sectors": ("ring-sector", "sector-fit"),
     "fields": ("mapped-temperature", "submodel"),
     "stops": ("stop",),
-    "start": ("start-plastic", "start-fit"),
+    "start": ("start-plastic", "start-holds", "start-fit"),
     "steps": (),
 }  # no records of a model: benchmarks
 KIND = {  # all are modes of a model

@@ -7,7 +7,17 @@ import pytest
 from abut.benchmarks import BENCHMARKS, run, started
 from abut.errors import AbutError
 
-NAMES = ("start-plastic", "start-fit", "coupled-beam", "coupled-shaft", "lever", "stop", "bars-ring", "strut")
+NAMES = (
+    "start-plastic",
+    "start-fit",
+    "start-holds",
+    "coupled-beam",
+    "coupled-shaft",
+    "lever",
+    "stop",
+    "bars-ring",
+    "strut",
+)
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -189,6 +189,66 @@ def test_other_supports_where_nothing_moved(first: str, second: str, across: flo
     np.testing.assert_allclose(moved[:3], [2 * 300 / 200e3, across, 0.0], rtol=1e-9, atol=1e-14)
 
 
+GRIP = '[[supports]]\non = "bar.right"\nx = 0.05\n'
+LET_GO = """[[holds]]
+name = "grip"
+on = "bar.right"
+x = 0.05
+reached = "assemble"
+until = "assemble"
+released = "load"
+"""
+CAUGHT = '[[holds]]\non = "bar.right"\nx = "stay"\nsince = "assemble"\n'
+
+
+def pulled(later: bool, by: str) -> str:
+    """The bar that yields, drawn by something else than the load."""
+    whole = bar(later)
+    return whole[: whole.index("[[loads]]")] + whole[whole.index("[[probes]]") :] + by
+
+
+def forces(folder: Path, name: str) -> list[float]:
+    """Along the bar, of what holds its end, step by step."""
+    head, *rows = [line.split(",") for line in (folder / name / "forces.csv").read_text().splitlines()]
+    return [float(row[head.index("force_x")]) for row in rows if row[head.index("name")] == "bar.right"]
+
+
+@pytest.mark.parametrize("first", [GRIP, LET_GO.split("until")[0]], ids=["by a support", "by a hold"])
+def test_what_moved_in_one_job_is_let_go_in_the_next(first: str, tmp_path: Path) -> None:
+    """Drawn to a strain e beyond yield, E and H in a row: the stress (e + Y / H) / (1 / E + 1 / H), which fades in a
+    straight line, and leaves the plastic strain. A hold gives a millionth of what a cell does."""
+    assert run(tmp_path, "a", pulled(False, first) + A) == 0
+    job = pulled(True, LET_GO) + LATER + continued("b")
+    assert run(tmp_path, "b", job) == 0
+    assert main(["check", str(tmp_path / "b.toml")]) == 0
+    drawn = (0.05 / 2 + 200 / 1e4) / (1 / 200e3 + 1 / 1e4)
+    np.testing.assert_allclose(forces(tmp_path, "b")[3:], drawn * np.linspace(1, 0, 6), rtol=1e-5, atol=1e-5 * drawn)
+    table = (tmp_path / "b" / "probe_end.csv").read_text().splitlines()
+    last = dict(zip(table[0].split(","), table[-1].split(",")))
+    stretch = next(float(value) for name, value in last.items() if name.startswith("displacement") and "x" in name)
+    assert stretch == pytest.approx(2 * (drawn - 200) / 1e4, rel=1e-5)
+
+
+def test_what_moved_in_one_job_is_held_in_the_next(tmp_path: Path) -> None:
+    """A bar drawn by a load and caught before that goes: the catch has all of the load, in proportion to what has gone."""
+    assert run(tmp_path, "a", bar(False) + A) == 0
+    assert run(tmp_path, "b", bar(True) + CAUGHT + LATER + continued("b")) == 0
+    np.testing.assert_allclose(forces(tmp_path, "b"), [0] * 4 + [60, 120, 180, 240, 300], rtol=1e-5, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("holds", "said"),
+    [("", "let a support go by a hold"), (LET_GO.replace("0.05", "0.04"), "hold 'grip' puts points up to 0.0025")],
+    ids=["nothing holds", "elsewhere"],
+)
+def test_what_does_not_hold_as_before_is_told(
+    holds: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(tmp_path, "a", pulled(False, GRIP) + A) == 0
+    assert run(tmp_path, "b", pulled(True, holds) + LATER + continued("b")) == 2
+    assert said in capsys.readouterr().err
+
+
 def test_other_multipliers_are_told(tmp_path: Path) -> None:
     """Supports that hold other nodes of a contactor leave other multipliers."""
     assert run(tmp_path, "a", text("steel", False) + A) == 0

@@ -134,7 +134,7 @@ class Run:
                 before = part.state
             self.steps.append(self._taken())
         self.clock.mark("results")
-        return done[-1].state
+        return before
 
     def march(self, first: State, done: Sequence[Saved] = ()) -> None:
         """Solve the steps that are left, each told and kept as it ends. done: those before."""
@@ -177,7 +177,7 @@ class Run:
             solve.max_iterations, iterated, begins, prepares, self.told.note, self._fallback, halves, self._onset, refines,
             self.settings,
         )  # fmt: skip
-        states = [problem.start(), *(saved.state for saved in done)]
+        states = [*(problem.start(), *(saved.state for saved in done))[:-1], first]
         pace = self._pace(states, done)
         stepper: Stepper
         if self.model.finite:

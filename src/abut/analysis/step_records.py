@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from abut.errors import InputError
 from abut.nonlinear.attempt import Attempt
 from abut.problem.balance import Balance
+from abut.problem.holds import Holds
 from abut.problem.linearised import Linearised
 from abut.problem.problem import ContactProblem
 from abut.solution import Saved, SavedPart
@@ -53,15 +55,28 @@ def restored(saved: Saved, before: State, problem: ContactProblem) -> list[Attem
     attempts = []
     for part, row in zip(parts, rows):
         own = problem.with_ordinary(part.inside) if part.inside.any() else problem
-        system = own.again(before, part.state)
+        system, state = _held(own, before, part.state) if saved.taken else (own.again(before, part.state), part.state)
         if saved.taken:
-            require_equilibrium(system, part.state, saved.number)
-        balance = Balance.of(system, part.state)
-        attempts.append(
-            Attempt(saved.number, part.state, True, row, none, part.inside, part.state.time, balance=balance)
-        )
-        before = part.state
+            require_equilibrium(system, state, saved.number)
+        balance = Balance.of(system, state)
+        attempts.append(Attempt(saved.number, state, True, row, none, part.inside, state.time, balance=balance))
+        before = state
     return attempts
+
+
+def _held(problem: ContactProblem, before: State, state: State) -> tuple[Linearised, State]:
+    """The problem near a state that was reached in another job, where supports may have held what are holds here: these
+    have the forces of those, and remember them. Raises InputError where points are elsewhere."""
+    system = problem.again(before, state)
+    holds = next((term for term in problem.terms if isinstance(term, Holds)), None)
+    if holds is None:
+        return system, state
+    given = holds.with_forces(problem.constraints.free @ system.unbalanced(state), state.time)
+    terms = [given if term is holds else term for term in problem.terms]
+    system = replace(problem, terms=terms).again(before, state)
+    displacement, share = problem.displacement(state), system.shares[holds.name]
+    holds.require_places(displacement, share, state.time, TAKEN * float(np.abs(displacement).max(initial=0.0)))
+    return system, replace(state, history=state.history.with_term(holds.name, share.history))
 
 
 def require_equilibrium(system: Linearised, state: State, number: int) -> None:
@@ -78,5 +93,5 @@ def require_equilibrium(system: Linearised, state: State, number: int) -> None:
         raise InputError(
             f"start: step {number} of the job before is not in balance at time {state.time:.6g} of this one (to "
             f"{max(float(forces), overlap):.2g}); loads, supports and contacts must be there what they were then: give "
-            "them amplitudes that pass through these values"
+            "them amplitudes that pass through these values, and let a support go by a hold that acts until this time"
         )

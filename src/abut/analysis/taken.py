@@ -62,7 +62,7 @@ def _found(
         raise InputError(
             f"start: supports of this job put points up to {off.max():.3g} from where step {number} of the job before has "
             f"them: {_named(off, model)}; a support acts from the start, at zero where its amplitude is: give it "
-            "values that pass through these displacements, or hold points that do not move in the job before"
+            "values that pass through these displacements, or make it a hold that acts since the end of the job before"
         )
     return replace(state, unknowns=free)
 

@@ -1,4 +1,5 @@
-"""Jobs that start from another one: a bar that has yielded is let go, bars that press each other are drawn apart."""
+"""Jobs that start from another one: a bar that has yielded is let go, by loads or by what held it; bars that press each
+other are drawn apart."""
 
 from __future__ import annotations
 
@@ -13,7 +14,7 @@ from abut.errors import AbutError
 from abut.materials.elastic import LinearElastic
 from abut.materials.plastic import Plastic
 from abut.mesh.make import box, join, rectangle
-from abut.model import Amplitude, Contact, Model, Solid, SolveOptions, Support, Traction
+from abut.model import Amplitude, Contact, Hold, Model, Solid, SolveOptions, Support, Traction
 from abut.output.restart import description, save_step
 from abut.output.start import load_start
 from abut.solution import Saved, Solution
@@ -21,6 +22,11 @@ from abut.solution import Saved, Solution
 YOUNG, YIELD, HARDENING, PULL, LENGTH = 200e3, 200.0, 1e4, 300.0, 2.0
 SOFT, OVERLAP, DRAWN = 1000.0, 0.04, 0.03  # two bars in a row, each of the length above, without lateral contraction
 SHARE = 0.5  # of the second job's time, at which the first one's steps end
+STRETCH, RELEASED, PUSHED = (
+    0.05,
+    0.75,
+    0.0446,
+)  # a bar drawn so far by a support, let go up to a time, then led elsewhere
 RAMP = Amplitude(((0.0, 0.0), (1.0, 1.0)))
 
 
@@ -35,6 +41,15 @@ def _let_go(level: int) -> Model:
         [Traction("bar.right", (PULL, 0.0, 0.0), Amplitude(((0.0, 0.0), (SHARE, 1.0), (1.0, 0.0))))],
         solve=SolveOptions(times=(0.25, SHARE, 0.75, 1.0)),
     )
+
+
+def _gripped(level: int) -> Model:
+    """Drawn by a grip, which lets go after the first job; what has taken hold of it then leads it back in part."""
+    grips = [
+        Hold("bar.right", x=STRETCH, reached=SHARE, until=SHARE, released=RELEASED, name="grip"),
+        Hold("bar.right", x=PUSHED, since=RELEASED, name="press"),
+    ]
+    return replace(_let_go(level), loads=(), holds=grips, solve=SolveOptions(times=(0.25, SHARE, 0.625, RELEASED, 1.0)))
 
 
 def _drawn(level: int) -> Model:
@@ -64,11 +79,13 @@ def _drawn(level: int) -> Model:
 
 
 def _first(model: Model) -> Model:
-    """The job before: what the model does up to the share, over its whole time."""
+    """The job before: what the model does up to the share, over its whole time. What holds is a support there."""
+    supports = [Support(hold.on, x=hold.x, amplitude=RAMP) for hold in model.holds if hold.since == 0.0]
     return replace(
         model,
+        holds=(),
         loads=[replace(load, amplitude=RAMP) for load in model.loads],
-        supports=[_still(support) for support in model.supports],
+        supports=[*(_still(support) for support in model.supports), *supports],
         contacts=[replace(contact, amplitude=RAMP) for contact in model.contacts],
         solve=SolveOptions(steps=2),
     )
@@ -103,12 +120,24 @@ def _stretches(solution: Solution) -> dict[str, float]:
     return {"drawn": at[SHARE], "let go": at[1.0]}
 
 
+def _grips(solution: Solution) -> dict[str, float]:
+    nodes = solution.model.mesh.nodes_of("bar.right")
+    at = {step.factor: step for step in solution.steps}
+    forces = {f"force at {time:g}": float(at[time].reactions["bar.right"][0]) for time in (SHARE, 0.625, 1.0)}
+    return {**forces, "let go": float(at[RELEASED].displacement[nodes, 0].mean())}
+
+
 def _pressures(solution: Solution) -> dict[str, float]:
     at = {step.factor: abs(float(step.contacts[0].force[0])) for step in solution.steps}
     return {"pressed": at[SHARE], "drawn away": at[1.0]}
 
 
 PLASTIC = (PULL - YIELD) / HARDENING
+DRAWN_TO = (STRETCH / LENGTH + YIELD / HARDENING) / (
+    1.0 / YOUNG + 1.0 / HARDENING
+)  # stress of the bar drawn by its grip
+STAYS = (DRAWN_TO - YIELD) / HARDENING
+GRIP, LIKE_HOLDS = "E and H in a row", "uniform stresses; a hold gives a millionth of what a cell does"
 BARS = "two bars in a row: E (overlap - way) / 2 L"
 UNIFORM = "uniform stresses; what Newton's method leaves"
 BENCHMARKS = (
@@ -117,6 +146,17 @@ BENCHMARKS = (
         {
             "drawn": Reference(LENGTH * (PULL / YOUNG + PLASTIC), 1e-7, "E and H in a row", UNIFORM),
             "let go": Reference(LENGTH * PLASTIC, 1e-7, "(stress - yield stress) / H of the length", UNIFORM),
+        },
+        solve=_one_after_the_other,
+    ),
+    Benchmark(
+        "start-holds", "bar drawn beyond yield by a support in one job; another one takes over in the next",
+        _gripped, _grips,
+        {
+            f"force at {SHARE:g}": Reference(DRAWN_TO, 1e-7, GRIP, UNIFORM),
+            "force at 0.625": Reference(0.5 * DRAWN_TO, 1e-7, GRIP, UNIFORM),
+            "let go": Reference(LENGTH * STAYS, 1e-7, "(stress - yield stress) / H of the length", UNIFORM),
+            "force at 1": Reference(YOUNG * (PUSHED / LENGTH - STAYS), 1e-5, "E times what is not plastic", LIKE_HOLDS),
         },
         solve=_one_after_the_other,
     ),

@@ -13,9 +13,18 @@ from abut.output.restart import description, differences, listed, read_steps
 from abut.solution import Saved
 
 # what may differ: what acts, whose values the balance of every step taken over compares, and the ways of all over time
-MAY_CHANGE = re.compile(r"(loads|supports|modes)\b|.*\bamplitude\b")
-REFUSED = ("equations", "rigid", "rotations", "couplings", "preloads", "holds", "removals", "penetrations", "connectors",
-           "physics")  # fmt: skip
+MAY_CHANGE = re.compile(r"(loads|supports|holds|modes)\b|.*\bamplitude\b")
+REFUSED = (
+    "equations",
+    "rigid",
+    "rotations",
+    "couplings",
+    "preloads",
+    "removals",
+    "penetrations",
+    "connectors",
+    "physics",
+)
 
 
 def load_start(directory: Path, model: Model, share: float) -> list[Saved]:
@@ -44,7 +53,7 @@ def load_start(directory: Path, model: Model, share: float) -> list[Saved]:
     for _, before in found:
         if changes := differences(_kept(before), own):
             raise InputError(f"start.results: the steps in {directory} are of another model:{listed(changes)}\nonly loads, "
-                             "supports and amplitudes may differ")  # fmt: skip
+                             "supports, holds and amplitudes may differ")  # fmt: skip
     scale = share / found[-1][0].state.time
     return [_sooner(saved, scale) for saved, _ in found]
 

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
 
 from abut.dofs import dofs_at
+from abut.errors import InputError
 from abut.mesh.facets import bodies_at
 from abut.model import Model
-from abut.model.hold import STAY, Hold
+from abut.model.hold import END, STAY, Hold
 from abut.model.step_ends import SAME
 from abut.problem.preloads import HELD
 from abut.problem.terms import MatrixTangent, Motion, Share
@@ -29,6 +30,11 @@ class Held:
     stays: Array
     stiffness: Array
 
+    def acts(self, time: float) -> bool:
+        """Whether it holds at a time."""
+        until = END if self.hold.until is None else self.hold.until
+        return self.hold.since + SAME < time <= until + SAME
+
     def target(self, place: Array, time: float) -> Array:
         """Where it leads to at a time, from ``place``, (n,)."""
         led = place * (1.0 - self.hold.way(time)) + self.values * self.hold.factor(time)
@@ -37,9 +43,11 @@ class Held:
 
 @dataclass(frozen=True)
 class Holds:
-    """All holds of a model, each a spring that is ``HELD`` times as stiff as a cell while it acts."""
+    """All holds of a model, each a spring that is ``HELD`` times as stiff as a cell while it acts. given: (dim n_points,)
+    forces that those that act have beside, at a state that something else than these springs has held so far."""
 
     parts: Sequence[Held]
+    given: Array | None = None
     name: str = "holds"
     constant: bool = False
 
@@ -62,6 +70,8 @@ class Holds:
                 place = here if now.time > 0.0 else np.zeros_like(here)
             elif hold.until is None or now.time <= hold.until + SAME:
                 kept = part.stiffness * (here - part.target(place, now.time))
+                if self.given is not None:
+                    kept = kept + self.given[part.at]
                 total[part.at] += kept
                 slope[part.at] += part.stiffness
             else:
@@ -69,6 +79,29 @@ class Holds:
                 total[part.at] += max(left, 0.0) * kept
             history |= {f"place{i}": place[:, None], f"force{i}": kept[:, None]}
         return Share(total, MatrixTangent(sp.diags(slope, format="csr")), history)
+
+    def with_forces(self, unbalanced: Array, time: float) -> Holds:
+        """With the forces that bring points into balance at a state, shared by the holds that act on them then;
+        unbalanced: (dim n_points,), on the side of those of stresses."""
+        count = np.zeros(len(unbalanced))
+        for part in self.parts:
+            count[part.at] += part.acts(time)
+        return replace(self, given=np.where(count > 0.0, -unbalanced / np.maximum(count, 1.0), 0.0))
+
+    def require_places(self, displacement: Array, share: Share, time: float, off: float) -> None:
+        """Raise InputError unless points, (dim n_points,) displaced, are by at most ``off`` where supports would have put
+        them that are what these holds are, or the springs of holds; share: their own at this state, with forces given."""
+        for i, part in enumerate(self.parts):
+            if not part.acts(time):
+                continue
+            place, force = share.history[f"place{i}"][:, 0], share.history[f"force{i}"][:, 0]
+            beside = displacement[part.at] - part.target(place, time)
+            far = np.minimum(np.abs(beside), np.abs(beside - force / part.stiffness)).max(initial=0.0)
+            if far > off:
+                raise InputError(
+                    f"start: hold '{part.hold.name}' puts points up to {far:.3g} from where the job before has them at time "
+                    f"{time:.6g} of this one; give it the displacement that they had there, or a later since"
+                )
 
     def resistance(self, motions: Array) -> Array:
         """Gram matrix of motions (dim n_points, m) by what holds take of them, of the size of one."""
