@@ -4,28 +4,42 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
-from abut.bodies.stress_stiffness import stress_stiffness
 from abut.errors import InputError, nearest
 from abut.model import Buckling, Frequencies, Harmonic, Model, Transient
 from abut.model.response import basis_of
 from abut.modes.buckling import buckling
 from abut.modes.complex_frequencies import complex_frequencies
 from abut.modes.cyclic import cyclic_frequencies, sides
+from abut.modes.factors import Alone
 from abut.modes.frequencies import densities, frequencies
-from abut.modes.held import Held, held
+from abut.modes.held import Eigensolver, Held, held
 from abut.modes.response import respond
 from abut.modes.sliding import sliding
 from abut.modes.spinning import spin_softening
 from abut.nonlinear.attempt import Attempt
 from abut.probing import Place
 from abut.problem.assembly import Assembled
+from abut.problem.backend import Backend
 from abut.problem.constraints import Constraints
 from abut.problem.linearised import Linearised
 from abut.problem.problem import ContactProblem
+from abut.problem.terms import Tangent
 from abut.solution import ModesResult, ResponseResult
 from abut.solution.state import State
-from abut.types import Sparse
+
+if TYPE_CHECKING:
+    from abut.parallel.team import Team
+
+
+def eigensolver(team: Team | None) -> Eigensolver:
+    """What finds modes, of one process or of a team."""
+    if team is None:
+        return Alone()
+    from abut.modes.together import Together
+
+    return Together(team)
 
 
 def check_modes(model: Model, team: bool) -> None:
@@ -33,7 +47,7 @@ def check_modes(model: Model, team: bool) -> None:
     if not model.modes:
         return
     if team:
-        raise InputError("modes: frequencies and buckling loads are found on one process without PETSc (solve.linear)")
+        _check_team(model)
     for wanted in model.modes:
         if isinstance(wanted, Frequencies) and wanted.side and wanted.side not in model.mesh.node_sets:
             raise InputError(
@@ -54,11 +68,22 @@ def check_modes(model: Model, team: bool) -> None:
         )
 
 
+def _check_team(model: Model) -> None:
+    """Raise InputError for what processes, or PETSc on one, cannot find."""
+    for wanted in model.modes:
+        if isinstance(wanted, Frequencies) and (wanted.complex or any(wanted.diameters)):
+            what = "complex = true" if wanted.complex else "nodal diameters other than 0"
+            raise InputError(f"frequencies: {what}: found on one process without PETSc (solve.linear); start one only")
+    from abut.parallel.launch import require_slepc
+
+    require_slepc()
+
+
 @dataclass(frozen=True)
 class Reached:
     """A converged state as vibrations see it. before, state: at the begin and the end of its step; problem, system: there;
-    near: the linear change of variables; there: stiffness and contact; stressed: stiffness that stresses add, (dim n_points,
-    dim n_points), None where the tangent has it; spins: of rotation."""
+    near: the linear change of variables; there: stiffness and contact; stressed: stiffness that stresses add, over all
+    points, None where the tangent has it; bodies: assembled."""
 
     problem: ContactProblem
     before: State
@@ -66,41 +91,43 @@ class Reached:
     system: Linearised
     near: Constraints
     there: Held
-    stressed: Sparse | None
-    spins: Sparse
+    stressed: Tangent | None
+    bodies: Backend
 
     @classmethod
-    def of(cls, assembled: Assembled, before: State, attempt: Attempt) -> Reached:
-        """before: the state that the attempt, which converged, began with."""
+    def of(cls, assembled: Assembled, before: State, attempt: Attempt, by: Eigensolver) -> Reached:
+        """before: the state that the attempt, which converged, began with; by: what finds modes."""
         state, problem = attempt.state, assembled.problem
         own = problem.with_ordinary(attempt.inside) if attempt.inside.any() else problem
         system = own.again(before, state)
         near = problem.constraints.near(state.unknowns, system.factors)
         stressed = _stressed(assembled, state) if problem.model.small_strains else None
-        spins = spin_softening(problem.model, state.time)
-        return cls(own, before, state, system, near, held(own, system, state), stressed, spins)
+        return cls(own, before, state, system, near, held(own, system, state, by), stressed, assembled.backend)
 
-    def added(self, wanted: Frequencies) -> Sparse | None:
-        """What the state adds to the stiffness of a linear body, or to the tangent of one at large displacements."""
-        if self.stressed is None:
-            return self.spins
-        return (self.stressed + self.spins).tocsr() if wanted.stiffening else None
+    def stiffened(self, there: Held, constraints: Constraints, wanted: Frequencies) -> Held:
+        """With what the state adds to the stiffness of a linear body, or to the tangent of one at large displacements."""
+        if self.stressed is not None and not wanted.stiffening:
+            return there
+        more = spin_softening(self.problem.model, self.bodies, constraints, self.state.time)
+        if self.stressed is not None:  # both are small beside the stiffness: together first
+            stressed = self.stressed.reduce(constraints)
+            more = stressed if more is None else stressed + more
+        return there if more is None else replace(there, stiffness=there.stiffness + more)
 
     def tight(self, wanted: Frequencies) -> Held:
         """Stiffness and contact that these modes have."""
-        more = self.added(wanted)
-        return self.there if more is None else _stiffened(self.there, self.near.reduce(more))
+        return self.stiffened(self.there, self.near, wanted)
 
 
 def modes(
-    assembled: Assembled, ends: Mapping[float, tuple[State, Attempt]], places: Sequence[Place]
+    assembled: Assembled, ends: Mapping[float, tuple[State, Attempt]], places: Sequence[Place], by: Eigensolver
 ) -> tuple[tuple[ModesResult, ...], tuple[ResponseResult, ...]]:
     """All that the model asks for, at the times of ``ends``: the state that the attempt, which converged, began with, and
-    that. places: of probes.
+    that. places: of probes; by: what finds modes.
 
     Raises InputError, ConvergenceError and SingularModelError."""
     model = assembled.problem.model
-    there = {time: Reached.of(assembled, *end) for time, end in ends.items()}
+    there = {time: Reached.of(assembled, *end, by) for time, end in ends.items()}
     found: list[tuple[Frequencies | Buckling, ModesResult]] = []
     for wanted in model.modes:
         if isinstance(wanted, (Frequencies, Buckling)) and wanted.time in there:
@@ -121,7 +148,7 @@ def _found(at: Reached, wanted: Frequencies | Buckling) -> tuple[ModesResult, ..
         return (buckling(at.problem.model, at.near, at.there, at.stressed, wanted),)
     around = tuple(diameter for diameter in wanted.diameters if diameter)
     alike = (_one(at, wanted),) if len(around) < len(wanted.diameters) else ()
-    return alike + (_around(at.problem, at.before, at.state, at.added(wanted), wanted, around) if around else ())
+    return alike + (_around(at, wanted, around) if around else ())
 
 
 def _one(at: Reached, wanted: Frequencies) -> ModesResult:
@@ -129,29 +156,21 @@ def _one(at: Reached, wanted: Frequencies) -> ModesResult:
     if wanted.complex:
         slides = sliding(at.system, at.state, at.there)
         return complex_frequencies(at.problem.model, at.near, tight, slides, wanted)
-    return frequencies(at.problem.model, at.near, tight, wanted)
+    model = at.problem.model
+    return frequencies(model, at.near, tight, at.bodies.mass(densities(model)), wanted)
 
 
-def _around(
-    problem: ContactProblem, before: State, state: State, added: Sparse | None, wanted: Frequencies,
-    diameters: Sequence[int],
-) -> tuple[ModesResult, ...]:  # fmt: skip
+def _around(at: Reached, wanted: Frequencies, diameters: Sequence[int]) -> tuple[ModesResult, ...]:
     """Frequencies with nodal diameters."""
-    apart = sides(problem.model, problem.constraints, wanted.side)
-    wide = apart.problem(problem)
-    there = apart.state(state)
-    tight = held(wide, wide.again(apart.state(before), there), there)
-    if added is not None:
-        tight = _stiffened(tight, apart.constraints.reduce(added))
-    return cyclic_frequencies(problem.model, apart, tight, wanted, diameters)
+    model = at.problem.model
+    apart = sides(model, at.problem.constraints, wanted.side)
+    wide, there = apart.problem(at.problem), apart.state(at.state)
+    loose = held(wide, wide.again(apart.state(at.before), there), there, at.there.by)
+    return cyclic_frequencies(model, apart, at.stiffened(loose, apart.constraints, wanted), wanted, diameters)
 
 
-def _stiffened(there: Held, added: Sparse) -> Held:
-    return replace(there, stiffness=(there.stiffness + added).tocsr()) if added.nnz else there
-
-
-def _stressed(assembled: Assembled, state: State) -> Sparse:
+def _stressed(assembled: Assembled, state: State) -> Tangent:
     """The stiffness that stresses add, over all points."""
     problem, bodies = assembled.problem, assembled.bodies
     motion = replace(problem.motion(state.time, problem.values(state)), history=state.history.of(bodies.name))
-    return stress_stiffness(problem.model.deformable, bodies.stress(motion))
+    return assembled.backend.stress_stiffness(bodies.stress(motion))
