@@ -30,10 +30,11 @@ exhaustive: .venv/installed-test
 lowest: .venv-lowest/installed
 	OMP_NUM_THREADS=1 .venv-lowest/bin/python -m pytest -n 2
 
-# Many processes: petsc4py, mpi4py and NumPy of the generation they were compiled for belong to the system's own Python.
+# Many processes: petsc4py, slepc4py, mpi4py and NumPy of the generation they were compiled for belong to the system's own Python.
 MPI_PYTHON ?= /usr/bin/python3
 MPI_BIN := .venv-mpi/bin
 PETSC_DIR ?= $(lastword $(sort $(wildcard /usr/lib/petscdir/petsc3*/*-real)))
+SLEPC_DIR ?= $(lastword $(sort $(wildcard /usr/lib/slepcdir/slepc3*/*-real)))
 
 .venv-mpi/installed: pyproject.toml CMakeLists.txt $(SOURCES)
 	test -x $(MPI_BIN)/python || $(MPI_PYTHON) -m venv --system-site-packages .venv-mpi
@@ -43,7 +44,7 @@ PETSC_DIR ?= $(lastword $(sort $(wildcard /usr/lib/petscdir/petsc3*/*-real)))
 	touch $@
 
 mpi: .venv-mpi/installed
-	PETSC_DIR=$(PETSC_DIR) ABUT_MPI_TESTS=required $(MPI_BIN)/python -m pytest --durations=5 tests/mpi
+	PETSC_DIR=$(PETSC_DIR) SLEPC_DIR=$(SLEPC_DIR) ABUT_MPI_TESTS=required $(MPI_BIN)/python -m pytest --durations=5 tests/mpi
 
 lint: .venv/installed-lint
 	$(BIN)/ruff check src tests examples bench docs web

@@ -4,30 +4,44 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from abut.bodies.stress_stiffness import stress_stiffness
 from abut.errors import InputError, nearest
 from abut.model import Buckling, Frequencies, Harmonic, Model, Transient
 from abut.model.response import basis_of
 from abut.modes.buckling import buckling
 from abut.modes.complex_frequencies import complex_frequencies
 from abut.modes.cyclic import cyclic_frequencies, sides
+from abut.modes.factors import Alone
 from abut.modes.frequencies import densities, frequencies
-from abut.modes.held import Held, held
+from abut.modes.held import Eigensolver, Held, held
 from abut.modes.response import respond
 from abut.modes.sliding import sliding
 from abut.modes.spinning import spin_softening
 from abut.nonlinear.attempt import Attempt
 from abut.probing import Place
 from abut.problem.assembly import Assembled
+from abut.problem.backend import Backend
 from abut.problem.constraints import Constraints
 from abut.problem.linearised import Linearised
 from abut.problem.problem import ContactProblem
+from abut.problem.terms import Tangent
 from abut.solution import ModesResult, ResponseResult
 from abut.solution.state import OPEN, State
-from abut.types import Sparse
+
+if TYPE_CHECKING:
+    from abut.parallel.team import Team
+
+
+def eigensolver(team: Team | None) -> Eigensolver:
+    """What finds modes, of one process or of a team."""
+    if team is None:
+        return Alone()
+    from abut.modes.together import Together
+
+    return Together(team)
 
 
 def check_modes(model: Model, team: bool) -> None:
@@ -35,7 +49,7 @@ def check_modes(model: Model, team: bool) -> None:
     if not model.modes:
         return
     if team:
-        raise InputError("modes: frequencies and buckling loads are found on one process without PETSc (solve.linear)")
+        _check_team(model)
     for wanted in model.modes:
         if isinstance(wanted, Frequencies) and wanted.side and wanted.side not in model.mesh.node_sets:
             raise InputError(
@@ -64,40 +78,52 @@ def _check_open(model: Model, wanted: Frequencies) -> None:
             raise InputError(f"frequencies: open: no contact named '{name}'{nearest(str(name), known)}")
 
 
+def _check_team(model: Model) -> None:
+    """Raise InputError for what processes, or PETSc on one, cannot find."""
+    for wanted in model.modes:
+        if isinstance(wanted, Frequencies) and (wanted.complex or any(wanted.diameters)):
+            what = "complex = true" if wanted.complex else "nodal diameters other than 0"
+            raise InputError(f"frequencies: {what}: found on one process without PETSc (solve.linear); start one only")
+    from abut.parallel.launch import require_slepc
+
+    require_slepc()
+
+
 @dataclass(frozen=True)
 class Reached:
     """A converged state as vibrations see it. before, state: at the begin and the end of its step; problem, system: there;
-    near: the linear change of variables; stressed: stiffness that stresses add, (dim n_points, dim n_points), None where the
-    tangent has it; spins: of rotation; apart: contacts that hold nothing."""
+    near: the linear change of variables; stressed: stiffness that stresses add, over all points, None where the tangent has
+    it; bodies: assembled; by: what finds modes; apart: contacts that hold nothing."""
 
     problem: ContactProblem
     before: State
     state: State
     system: Linearised
     near: Constraints
-    stressed: Sparse | None
-    spins: Sparse
+    stressed: Tangent | None
+    bodies: Backend
+    by: Eigensolver
     apart: frozenset[str] = frozenset()
 
     @classmethod
-    def of(cls, assembled: Assembled, before: State, attempt: Attempt) -> Reached:
-        """before: the state that the attempt, which converged, began with."""
+    def of(cls, assembled: Assembled, before: State, attempt: Attempt, by: Eigensolver) -> Reached:
+        """before: the state that the attempt, which converged, began with; by: what finds modes."""
         problem = assembled.problem
         own = problem.with_ordinary(attempt.inside) if attempt.inside.any() else problem
-        return cls._of(assembled, own, before, attempt.state)
+        return cls._of(assembled, own, before, attempt.state, by)
 
     @classmethod
-    def at_start(cls, assembled: Assembled) -> Reached:
+    def at_start(cls, assembled: Assembled, by: Eigensolver) -> Reached:
         """Before anything acts."""
         start = assembled.problem.start()
-        return cls._of(assembled, assembled.problem, start, start)
+        return cls._of(assembled, assembled.problem, start, start, by)
 
     @classmethod
-    def _of(cls, assembled: Assembled, own: ContactProblem, before: State, state: State) -> Reached:
+    def _of(cls, assembled: Assembled, own: ContactProblem, before: State, state: State, by: Eigensolver) -> Reached:
         problem, system = assembled.problem, own.again(before, state)
         near = problem.constraints.near(state.unknowns, system.factors)
         stressed = _stressed(assembled, state) if problem.model.small_strains else None
-        return cls(own, before, state, system, near, stressed, spin_softening(problem.model, state.time))
+        return cls(own, before, state, system, near, stressed, assembled.backend, by)
 
     def as_in(self, wanted: Frequencies | Buckling) -> Reached:
         """With the contacts open that hold nothing in these modes, which before anything acts are all but ties. Where bodies
@@ -115,31 +141,34 @@ class Reached:
     @property
     def there(self) -> Held:
         """Stiffness and contact, but for what the state adds."""
-        return held(self.problem, self.system, self.state, self.apart)
+        return held(self.problem, self.system, self.state, self.by, self.apart)
 
-    def added(self, wanted: Frequencies) -> Sparse | None:
-        """What the state adds to the stiffness of a linear body, or to the tangent of one at large displacements."""
-        if self.stressed is None:
-            return self.spins
-        return (self.stressed + self.spins).tocsr() if wanted.stiffening else None
+    def stiffened(self, there: Held, constraints: Constraints, wanted: Frequencies) -> Held:
+        """With what the state adds to the stiffness of a linear body, or to the tangent of one at large displacements."""
+        if self.stressed is not None and not wanted.stiffening:
+            return there
+        more = spin_softening(self.problem.model, self.bodies, constraints, self.state.time)
+        if self.stressed is not None:  # both are small beside the stiffness: together first
+            stressed = self.stressed.reduce(constraints)
+            more = stressed if more is None else stressed + more
+        return there if more is None else replace(there, stiffness=there.stiffness + more)
 
     def tight(self, wanted: Frequencies) -> Held:
         """Stiffness and contact that these modes have."""
-        more = self.added(wanted)
-        return self.there if more is None else _stiffened(self.there, self.near.reduce(more))
+        return self.stiffened(self.there, self.near, wanted)
 
 
 def modes(
-    assembled: Assembled, ends: Mapping[float, tuple[State, Attempt]], places: Sequence[Place]
+    assembled: Assembled, ends: Mapping[float, tuple[State, Attempt]], places: Sequence[Place], by: Eigensolver
 ) -> tuple[tuple[ModesResult, ...], tuple[ResponseResult, ...]]:
     """All that the model asks for, at the times of ``ends``: the state that the attempt, which converged, began with, and
-    that. places: of probes.
+    that. places: of probes; by: what finds modes.
 
     Raises InputError, ConvergenceError and SingularModelError."""
     model = assembled.problem.model
-    there = {time: Reached.of(assembled, *end) for time, end in ends.items()}
+    there = {time: Reached.of(assembled, *end, by) for time, end in ends.items()}
     if any(wanted.time == 0.0 for wanted in model.modes):
-        there[0.0] = Reached.at_start(assembled)
+        there[0.0] = Reached.at_start(assembled, by)
     found: list[tuple[Frequencies | Buckling, ModesResult]] = []
     for wanted in model.modes:
         if isinstance(wanted, (Frequencies, Buckling)) and wanted.time in there:
@@ -168,27 +197,21 @@ def _one(at: Reached, wanted: Frequencies) -> ModesResult:
     if wanted.complex:
         slides = sliding(at.system, at.state, tight)
         return complex_frequencies(at.problem.model, at.near, tight, slides, wanted)
-    return frequencies(at.problem.model, at.near, tight, wanted)
+    model = at.problem.model
+    return frequencies(model, at.near, tight, at.bodies.mass(densities(model)), wanted)
 
 
 def _around(at: Reached, wanted: Frequencies, diameters: Sequence[int]) -> tuple[ModesResult, ...]:
     """Frequencies with nodal diameters."""
-    problem, added = at.problem, at.added(wanted)
-    apart = sides(problem.model, problem.constraints, wanted.side)
-    wide = apart.problem(problem)
-    there = apart.state(at.state)
-    tight = held(wide, wide.again(apart.state(at.before), there), there, at.apart)
-    if added is not None:
-        tight = _stiffened(tight, apart.constraints.reduce(added))
-    return cyclic_frequencies(problem.model, apart, tight, wanted, diameters)
+    model = at.problem.model
+    apart = sides(model, at.problem.constraints, wanted.side)
+    wide, there = apart.problem(at.problem), apart.state(at.state)
+    loose = held(wide, wide.again(apart.state(at.before), there), there, at.by, at.apart)
+    return cyclic_frequencies(model, apart, at.stiffened(loose, apart.constraints, wanted), wanted, diameters)
 
 
-def _stiffened(there: Held, added: Sparse) -> Held:
-    return replace(there, stiffness=(there.stiffness + added).tocsr()) if added.nnz else there
-
-
-def _stressed(assembled: Assembled, state: State) -> Sparse:
+def _stressed(assembled: Assembled, state: State) -> Tangent:
     """The stiffness that stresses add, over all points."""
     problem, bodies = assembled.problem, assembled.bodies
     motion = replace(problem.motion(state.time, problem.values(state)), history=state.history.of(bodies.name))
-    return stress_stiffness(problem.model.deformable, bodies.stress(motion))
+    return assembled.backend.stress_stiffness(bodies.stress(motion))

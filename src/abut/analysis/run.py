@@ -13,7 +13,7 @@ from abut.analysis.deadline import Deadline
 from abut.analysis.interpolation_error import Mended, is_mended, mended
 from abut.analysis.limit_load import limit_load, near_limit, yields
 from abut.analysis.linear_solvers import assembled_bodies, linear_solver, setting_up, solver_kind
-from abut.analysis.modes import check_modes, modes
+from abut.analysis.modes import check_modes, eigensolver, modes
 from abut.analysis.parts import whole
 from abut.analysis.results import Acted, step_result
 from abut.analysis.step_records import check_order, restored, saved_step
@@ -91,7 +91,7 @@ class Run:
     ) -> Run:  # fmt: skip
         """Set a run up. Raises InputError and SingularModelError for a model that cannot be solved."""
         told, clock, deadline = Told(observe), Clock(), Deadline(model.solve.seconds)
-        check_modes(model, team is not None)
+        check_modes(model, team is not None or model.solve.linear == "petsc")
         places = find_places(model)
         for text in (*choices(model.contacts), *(text for place in places for text in place.notes)):
             told.note(text)
@@ -198,7 +198,7 @@ class Run:
         if not self.model.modes or not all(step.converged for step in self.steps):
             return
         self.told.observe(Phase("frequencies and buckling"))
-        self.modes, self.responses = modes(self.assembled, self.looked, self.places)
+        self.modes, self.responses = modes(self.assembled, self.looked, self.places, eigensolver(self.team))
         self.clock.mark("modes")
 
     def _onset(self, earlier: State | None, before: State, now: State) -> Onset:

@@ -7,21 +7,20 @@ from numpy.typing import NDArray
 
 from abut.errors import InputError
 from abut.model import Buckling, Model
-from abut.modes.factors import Factors
 from abut.modes.frequencies import relative_energy
 from abut.modes.held import Held
-from abut.modes.spectrum import MORE, Pencil, gap_after, largest
+from abut.modes.spectrum import MORE, Pencil, gap_after
 from abut.problem.constraints import Constraints
+from abut.problem.terms import Tangent
 from abut.solution.modes import BUCKLING, ModesResult
-from abut.types import Sparse
+from abut.types import Operator
 
 NOTHING = 1e-12  # of the largest 1 / factor: none at all
 Vector = NDArray[np.float64]
 
 
-def buckling(model: Model, constraints: Constraints, held: Held, stressed: Sparse, wanted: Buckling) -> ModesResult:
-    """The smallest positive factors, theory (J6). stressed: (dim n_points, dim n_points) stiffness that stresses add, of
-    ``stress_stiffness``.
+def buckling(model: Model, constraints: Constraints, held: Held, stressed: Tangent, wanted: Buckling) -> ModesResult:
+    """The smallest positive factors, theory (J6). stressed: stiffness that stresses add, over all points.
 
     Raises InputError where no stress makes anything buckle, or bodies are not held, ConvergenceError, and
     SingularModelError."""
@@ -29,13 +28,12 @@ def buckling(model: Model, constraints: Constraints, held: Held, stressed: Spars
         raise InputError(
             "buckling: some body moves as a whole without resistance, and any load makes it give way; support it"
         )
-    geometric = constraints.reduce(stressed)
-    factors, stiffness = Factors(held.stiffness, held), held.stiffness
-    size = stiffness.shape[0]
-    pencil = Pencil(factors.solve, (-geometric).tocsr(), stiffness, size, size - len(held.give))
-    if not np.abs(geometric.data).max(initial=0.0):
+    geometric, stiffness = stressed.reduce(constraints), held.stiffness
+    factors, size = held.by.factors(stiffness, held), stiffness.shape[0]
+    pencil = Pencil(factors, -1.0 * geometric, stiffness, size, size - len(held.give))
+    if not (geometric @ np.random.default_rng(0).standard_normal(size)).any():
         raise InputError("buckling: there is no stress at the end of the last step; give a load")
-    found = largest(pencil, wanted.count + MORE)
+    found = held.by.largest(pencil, wanted.count + MORE)
     positive = found.values > NOTHING * np.abs(found.values).max(initial=0.0)
     if not positive.any():
         raise InputError(
@@ -59,11 +57,11 @@ def buckling(model: Model, constraints: Constraints, held: Held, stressed: Spars
     )  # fmt: skip
 
 
-def _missing(held: Held, geometric: Sparse, values: Vector, count: int) -> int | None:
+def _missing(held: Held, geometric: Operator, values: Vector, count: int) -> int | None:
     """How many factors are missing below the last one, by a count; None where that is not known."""
     place = gap_after(values, min(count, len(values) - 1)) if len(values) > 1 else None
     if place is None:
         return None
     below, top = place
-    known = Factors((held.stiffness + top * geometric).tocsr(), held).negative
+    known = held.by.factors(held.stiffness + top * geometric, held).negative
     return None if known is None else max(known - below, 0)

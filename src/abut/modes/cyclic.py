@@ -107,7 +107,12 @@ def _one(model: Model, apart: Sides, held: Held, reduced: Sparse, wanted: Freque
     real, imaginary = apart.own + np.cos(angle) * apart.turned, np.sin(angle) * apart.turned
     both = sp.bmat([[real, -imaginary], [imaginary, real]]).tocsr()  # real and imaginary parts of x by those of q
     doubled = Held(
-        _hermitian(held.stiffness, both), (_twice(held.rows) @ both).tocsr(), np.tile(held.give, 2), True, held.kept
+        _hermitian(held.stiffness, both),
+        (_twice(held.rows) @ both).tocsr(),
+        np.tile(held.give, 2),
+        True,
+        held.kept,
+        held.by,
     )
     found = lowest(doubled, _hermitian(reduced, both), wanted.count)
     moved = _twice(apart.constraints.free) @ (both @ found.vectors)

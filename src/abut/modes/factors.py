@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from abut.linear import direct
 from abut.modes.held import Held
+from abut.modes.spectrum import Pairs, Pencil, largest
 from abut.types import Sparse
 
 Vector = NDArray[np.float64]
@@ -17,8 +18,7 @@ Vector = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Factors:
-    """matrix: (n_free, n_free) symmetric CSR, as the stiffness of ``held`` with something added. Raises SingularModelError
-    where it is singular."""
+    """As ``abut.modes.spectrum.Factored``, of one process. matrix: (n_free, n_free) symmetric CSR."""
 
     matrix: Sparse
     held: Held
@@ -26,25 +26,41 @@ class Factors:
     _scale: Vector = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        held, rows = self.held, self.held.rows
-        unit = float(np.median(np.abs(held.stiffness.diagonal())))
-        largest = abs(rows).max(axis=1).toarray().ravel() if rows.shape[0] else np.zeros(0)
-        scale = unit / np.maximum(largest, 1e-300)
-        corner = sp.diags(-(scale**2) * held.give)
+        scale, below, corner = beside(self.held)
         upper = sp.triu(self.matrix, format="csr")
-        below = (sp.diags(scale) @ rows).tocsr()
-        whole = sp.bmat([[upper, below.T], [None, corner]], format="csr") if rows.shape[0] else upper
+        whole = sp.bmat([[upper, below.T], [None, corner]], format="csr") if len(scale) else upper
         object.__setattr__(self, "_scale", scale)
         object.__setattr__(self, "_factors", direct.Factorization(direct.store_diagonal(whole), quick=True))
 
     def solve(self, force: Vector) -> Vector:
-        """Displacements (n_free,) by forces (n_free,)."""
+        """As in ``Factored``."""
         rhs = np.concatenate([force, np.zeros(len(self._scale))])
         return np.asarray(self._factors.solve(rhs)[: len(force)])
 
     @property
     def negative(self) -> int | None:
-        """How many of the matrix' eigenvalues on motions that contact allows are negative (Sylvester's law of inertia);
-        None where the factors do not tell."""
+        """As in ``Factored``."""
         count = self._factors.negative
         return None if count is None else count - len(self._scale)
+
+
+def beside(held: Held) -> tuple[Vector, Sparse, Sparse]:
+    """What stands beside a stiffness for what contact holds: (m,) factors by which its rows have the size of the stiffness,
+    these rows (m, n_free) and the corner (m, m)."""
+    rows = held.rows
+    unit = float(np.median(np.abs(held.stiffness.diagonal())))
+    size = abs(rows).max(axis=1).toarray().ravel() if rows.shape[0] else np.zeros(0)
+    scale = unit / np.maximum(size, 1e-300)
+    return scale, (sp.diags(scale) @ rows).tocsr(), sp.diags(-(scale**2) * held.give)
+
+
+class Alone:
+    """As ``abut.modes.held.Eigensolver``, on one process: PARDISO or SuperLU, and ARPACK."""
+
+    def factors(self, matrix: Sparse, held: Held) -> Factors:
+        """As in ``Eigensolver``."""
+        return Factors(matrix.tocsr(), held)
+
+    def largest(self, pencil: Pencil, count: int, seed: int = 0) -> Pairs:
+        """As in ``Eigensolver``."""
+        return largest(pencil, count, seed)

@@ -5,32 +5,29 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut.bodies.mass import mass
 from abut.bodies.rigid_modes import motions
 from abut.errors import InputError
 from abut.model import Frequencies, Model
-from abut.modes.factors import Factors
 from abut.modes.held import Held
-from abut.modes.spectrum import MORE, Pairs, Pencil, gap_after, largest
+from abut.modes.spectrum import MORE, Pairs, Pencil, gap_after
 from abut.problem.constraints import Constraints
+from abut.problem.terms import Tangent
 from abut.solution.modes import FREQUENCIES, ModesResult
-from abut.types import Sparse
+from abut.types import Operator
 
 SHIFT = 1e-8  # of stiffness over mass of a cell, below zero, where bodies move freely as a whole
 ROUNDING = 64.0 * np.finfo(float).eps  # of the same: squares of frequencies that are zero
 Vector = NDArray[np.float64]
 
 
-def frequencies(model: Model, constraints: Constraints, held: Held, wanted: Frequencies) -> ModesResult:
+def frequencies(model: Model, constraints: Constraints, held: Held, whole: Tangent, wanted: Frequencies) -> ModesResult:
     """The lowest frequencies, theory (J1) to (J3). constraints: the linear change of variables near the state; held: its
-    stiffness and contact.
+    stiffness and contact; whole: mass of all points.
 
-    Raises InputError where no body has a density, ConvergenceError, and SingularModelError."""
-    whole = mass(model.mesh, densities(model))
-    found = lowest(held, constraints.reduce(whole), wanted.count)
+    Raises ConvergenceError and SingularModelError."""
+    found = lowest(held, whole.reduce(constraints), wanted.count)
     shapes = np.asarray(constraints.free @ found.vectors)
     factors, total = _participation(model, whole, shapes)
     return ModesResult(
@@ -56,25 +53,26 @@ class Lowest:
         return np.asarray(np.sign(self.squares) * np.sqrt(np.abs(self.squares)) / (2.0 * np.pi))
 
 
-def lowest(held: Held, reduced: Sparse, count: int) -> Lowest:
+def lowest(held: Held, reduced: Operator, count: int) -> Lowest:
     """The lowest ``count`` modes; reduced: (n_free, n_free) mass. Raises ConvergenceError and SingularModelError."""
     highest = fastest(held.stiffness, reduced)
     shift = -SHIFT * highest if held.loose else 0.0
-    shifted = Factors((held.stiffness - shift * reduced).tocsr() if shift else held.stiffness, held)
+    stiffness = held.stiffness - shift * reduced if shift else held.stiffness
+    shifted = held.by.factors(stiffness, held)
     moving = int((reduced.diagonal() > 0.0).sum())
-    pencil = Pencil(shifted.solve, reduced, reduced, reduced.shape[0], min(moving, reduced.shape[0] - len(held.give)))
+    pencil = Pencil(shifted, reduced, reduced, reduced.shape[0], min(moving, reduced.shape[0] - len(held.give)))
     rounding = ROUNDING * highest
     found, missing = _complete(pencil, held, shift, count, rounding)
     squares, vectors = shift + 1.0 / found.values, found.vectors
     squares = np.where(np.abs(squares) <= rounding, 0.0, squares)
     mass_of = reduced @ vectors
     again = np.column_stack([shifted.solve(force) for force in mass_of.T]) / found.values - vectors
-    residual = relative_energy(shifted.matrix, again, vectors)
+    residual = relative_energy(stiffness, again, vectors)
     products = vectors.T @ mass_of - np.eye(len(squares))
     return Lowest(squares, vectors, float(residual.max()), float(np.abs(products).max()), missing)
 
 
-def relative_energy(stiffness: Sparse, change: Vector, vectors: Vector) -> Vector:
+def relative_energy(stiffness: Operator, change: Vector, vectors: Vector) -> Vector:
     """(n,) roots of the energy of changes (n_free, n) over that of vectors (n_free, n)."""
     left, whole = (np.einsum("im,im->m", x, stiffness @ x) for x in (change, vectors))
     return np.asarray(np.sqrt(np.abs(left) / np.maximum(np.abs(whole), 1e-300)))
@@ -91,7 +89,7 @@ def densities(model: Model) -> dict[str, float]:
     return found
 
 
-def fastest(stiffness: Sparse, mass: Sparse) -> float:
+def fastest(stiffness: Operator, mass: Operator) -> float:
     """Square of the highest angular frequency, about: of points by themselves."""
     stiff, heavy = stiffness.diagonal(), mass.diagonal()
     return float(np.median(stiff[heavy > 0.0] / heavy[heavy > 0.0]))
@@ -101,14 +99,14 @@ def _complete(pencil: Pencil, held: Held, shift: float, count: int, rounding: fl
     """The lowest ``count``, ascending, and how many are missing; where some are, once more with another start."""
     wanted, missing = count + MORE, None
     for seed in range(2):
-        found = largest(pencil, wanted, seed)
+        found = held.by.largest(pencil, wanted, seed)
         order = np.argsort(1.0 / found.values)
         found = Pairs(found.values[order], found.vectors[:, order])
         place = gap_after(shift + 1.0 / found.values, count, rounding)
         if place is None:
             break
         below, top = place
-        known = Factors((held.stiffness - top * pencil.metric).tocsr(), held).negative
+        known = held.by.factors(held.stiffness - top * pencil.metric, held).negative
         missing = None if known is None else max(known - below, 0)
         if not missing:
             break
@@ -120,8 +118,8 @@ def _first(found: Pairs, count: int) -> Pairs:
     return Pairs(found.values[:count], found.vectors[:, :count])
 
 
-def _participation(model: Model, mass: Sparse, shapes: Vector) -> tuple[Vector, Vector]:
+def _participation(model: Model, mass: Tangent, shapes: Vector) -> tuple[Vector, Vector]:
     """Factors (n, k) of modes (dim n_points, n) with unit motions of the whole, and its mass for these (k,)."""
     unit = motions(model.mesh.points, model.mesh.axisymmetric).reshape(shapes.shape[0], -1)
-    moved = sp.csr_matrix(mass) @ unit
+    moved = mass.internal(unit)
     return np.asarray(shapes.T @ moved), np.asarray(np.einsum("ik,ik->k", unit, moved))

@@ -4,45 +4,65 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from abut.bordered import eliminated
 from abut.contact.laws import Law
+from abut.modes.spectrum import Factored, Pairs, Pencil
 from abut.problem.laws import at_multipliers
 from abut.problem.linearised import Linearised
 from abut.problem.pair import Pair
 from abut.problem.problem import ContactProblem
 from abut.solution.state import State
-from abut.types import Sparse
+from abut.types import Operator, Sparse
 
 HARD = 1e-9  # by how much of what cells give way by (theory (L2)) gaps give way that are held: what is held twice is unique
 LOOSE = 1e-6  # change of gaps by a rigid motion, over that by the one that changes them most, below which nothing resists it
 Vector = NDArray[np.float64]
 
 
+class Eigensolver(Protocol):
+    """What factorises, and finds eigenpairs: on one process or on many."""
+
+    def factors(self, matrix: Operator, held: Held) -> Factored:
+        """Of a symmetric matrix (n_free, n_free), as the stiffness of ``held`` with something added, beside what is held.
+        Raises SingularModelError where it is singular."""
+        ...
+
+    def largest(self, pencil: Pencil, count: int, seed: int = 0) -> Pairs:
+        """The ``count`` largest t of a pencil, or as many as there may be; of positive t those found where iterations end.
+        Raises ConvergenceError where they end else."""
+        ...
+
+
 @dataclass(frozen=True)
 class Held:
-    """stiffness: (n_free, n_free) symmetric CSR, of bodies and real springs; rows: (m, n_free) of the gaps and slips
-    that are held; give: (m,) what these give way by per multiplier, positive; loose: whether bodies move as a whole without
-    resistance; kept: (m,) which of the problem's multipliers these are."""
+    """stiffness: (n_free, n_free) symmetric, of bodies and real springs, CSR or on many processes; rows: (m, n_free) of the
+    gaps and slips that are held; give: (m,) what these give way by per multiplier, positive; loose: whether bodies move as a
+    whole without resistance; kept: (m,) which of the problem's multipliers these are; by: what finds modes."""
 
-    stiffness: Sparse
+    stiffness: Operator
     rows: Sparse
     give: Vector
     loose: bool
     kept: NDArray[np.int64]
+    by: Eigensolver
 
 
-def held(problem: ContactProblem, system: Linearised, state: State, apart: Collection[str] = ()) -> Held:
+def held(
+    problem: ContactProblem, system: Linearised, state: State, by: Eigensolver, apart: Collection[str] = ()
+) -> Held:
     """Of a problem near a converged state, theory (J2). Closed contact is held along its normals, sticking in all
     directions, ties in all; what slips is free along its surface; contact with a law of its own gives way as that says.
     apart: contacts of which nothing is held."""
     own = problem.springs
     artificial = sp.csr_matrix((own.stiffness, (own.columns, own.columns)), shape=system.stiffness.shape)
-    stiffness = (system.stiffness - artificial).tocsr()
-    stiffness = (0.5 * (stiffness + stiffness.T)).tocsr()
+    stiffness = eliminated(system.stiffness) - artificial
+    stiffness = 0.5 * (stiffness + stiffness.T)
     kept, give = [np.zeros(0, bool)], [np.zeros(0)]
     parts = zip(system.pairs, *map(system.split, (system.gap(state), state.multipliers, state.closed, state.slipping)))
     for pair, gap, multipliers, closed, slipping in parts:
@@ -57,7 +77,7 @@ def held(problem: ContactProblem, system: Linearised, state: State, apart: Colle
         give.append(np.maximum(soft, HARD * pair.scale)[here])
     places = np.flatnonzero(np.concatenate(kept))
     rows = sp.csr_matrix(system.operator)[places]
-    return Held(stiffness, rows, np.concatenate(give), len(own) > 0 or _is_loose(rows, system.motions), places)
+    return Held(stiffness, rows, np.concatenate(give), len(own) > 0 or _is_loose(rows, system.motions), places, by)
 
 
 def _status(pair: Pair, closed: NDArray[np.bool_], slipping: NDArray[np.bool_]) -> NDArray[np.bool_]:

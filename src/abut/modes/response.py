@@ -12,7 +12,6 @@ from abut.bodies.mass import mass
 from abut.errors import InputError
 from abut.model import Harmonic, Model, Transient
 from abut.model.response import Response
-from abut.modes.factors import Factors
 from abut.modes.frequencies import densities
 from abut.modes.held import Held
 from abut.modes.oscillators import Oscillators, shares
@@ -127,7 +126,7 @@ def _shaken(constraints: Constraints, held: Held, found: ModesResult, forces: Ve
     modal = np.asarray(shapes @ forces)
     if held.loose or not found.eigenvalues.all():
         return Shaken(modal, np.zeros(forces.shape), float("nan"))
-    factors, free = Factors(held.stiffness, held), constraints.free
+    factors, free = held.by.factors(held.stiffness, held), constraints.free
     rest, share = np.zeros(forces.shape), 0.0
     for k in np.flatnonzero(forces.any(axis=0)):
         static = np.asarray(free @ factors.solve(np.asarray(free.T @ forces[:, k])))

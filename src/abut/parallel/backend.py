@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -29,6 +29,7 @@ from abut.parallel.partition import Layout, Piece, layout, owners, pieces, point
 from abut.parallel.team import Kept, Team
 from abut.problem.backend import Deformed
 from abut.problem.constraints import Constraints
+from abut.types import Array
 
 
 @dataclass(frozen=True)
@@ -102,11 +103,11 @@ class DistributedBodies:
         """As in ``Backend``, a matrix of PETSc's."""
         return with_pressures(self.reduced("stiffness", constraints), self.pressed, constraints)
 
-    def reduced(self, tangent: str | int, constraints: Constraints) -> Distributed:
+    def reduced(self, tangent: str | int, constraints: Constraints, added: bool = False) -> Distributed:
         """PETSc's matrix of the tangents that the processes keep under a name or number, which they lose, but for the
-        stiffness of a model whose iterations need it again."""
+        stiffness of a model whose iterations need it again, and for what is ``added`` to a stiffness."""
         places, kept = self._laid_out(constraints), self.team.keep()
-        self.team.each(reduce, tangent, kept.number, places.starts, places.block)
+        self.team.each(reduce, tangent, kept.number, places.starts, places.block, added)
         return Distributed(self.team, places, kept)
 
     def _laid_out(self, constraints: Constraints) -> Layout:
@@ -136,16 +137,42 @@ class DistributedBodies:
         self._require_sound(answers)
         groups = self.model.deformable.groups()
         result = [np.empty((len(group.cells), len(group.rule[1]), 6)) for group in groups]
-        place = np.empty((self.model.mesh.n_cells, 2), dtype=np.int64)  # group and row of each cell
-        for number, group in enumerate(groups):
-            place[group.cells] = np.column_stack([np.full(len(group.cells), number), np.arange(len(group.cells))])
         for piece, (stress, cells) in zip(self.pieces, answers):
             for values, own in zip(stress, cells):
-                number, rows = place[piece.cells[own]].T
+                number, rows = self._group_and_row[piece.cells[own]].T
                 for one in np.unique(number):  # groups of the whole end where blocks of cells do
                     result[one][rows[number == one]] = values[number == one]
         add_pressures(self.model.deformable, np.ascontiguousarray(displacement), change, result)
         return tuple(result)
+
+    @cached_property
+    def _group_and_row(self) -> NDArray[np.int64]:
+        """Of each cell in the whole, (n_cells, 2)."""
+        place = np.empty((self.model.mesh.n_cells, 2), dtype=np.int64)
+        for number, group in enumerate(self.model.deformable.groups()):
+            place[group.cells] = np.column_stack([np.full(len(group.cells), number), np.arange(len(group.cells))])
+        return place
+
+    def mass(self, densities: Mapping[str, float], along: Array | None = None) -> TangentOfParts:
+        """As in ``Backend``."""
+        kept = self.team.keep()
+        self.team.each(part.keep_mass, kept.number, densities, along)
+        return TangentOfParts(self, kept, added=True)
+
+    def stress_stiffness(self, stress: PointStress) -> TangentOfParts:
+        """As in ``Backend``."""
+        kept, shares = self.team.keep(), []
+        for piece in self.pieces:
+            own: list[Array] = []
+            for group in replace(self.cellwise, mesh=piece.mesh).groups() if len(piece.cells) else ():
+                number, rows = self._group_and_row[piece.cells[group.cells]].T
+                values = np.empty((len(rows), len(group.rule[1]), 6))
+                for one in np.unique(number):
+                    values[number == one] = stress[one][rows[number == one]]
+                own.append(values)
+            shares.append((tuple(own),))
+        self.team.each(part.keep_stress_stiffness, kept.number, per_rank=shares)
+        return TangentOfParts(self, kept, added=True)
 
     def deform(
         self,
@@ -225,11 +252,12 @@ class DistributedBodies:
 @dataclass(frozen=True)
 class TangentOfParts:
     """As ``abut.problem.backend.Tangent``: every process has that of its part, until it is reduced; pressed: that of
-    pressures that are continuous, process 0."""
+    pressures that are continuous, process 0; added: to a stiffness, and reduced as often as one likes."""
 
     bodies: DistributedBodies
     kept: Kept
     pressed: Bordered | None = None
+    added: bool = False
 
     def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
         """As in ``Tangent``."""
@@ -239,8 +267,9 @@ class TangentOfParts:
         return force if self.pressed is None else np.asarray(force + self.pressed @ displacement)
 
     def reduce(self, constraints: Constraints) -> Distributed:
-        """As in ``Tangent``, once."""
-        return with_pressures(self.bodies.reduced(self.kept.number, constraints), self.pressed, constraints)
+        """As in ``Tangent``, once unless it is ``added``."""
+        matrix = self.bodies.reduced(self.kept.number, constraints, self.added)
+        return with_pressures(matrix, self.pressed, constraints)
 
 
 def with_pressures(matrix: Distributed, pressed: Bordered | None, constraints: Constraints) -> Distributed:

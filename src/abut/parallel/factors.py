@@ -29,6 +29,11 @@ class Factors:
     pattern: Sparse
     symmetric: bool
 
+    def destroy(self) -> None:
+        """Free their memory now, not when Python finds the time."""
+        self.solver.destroy()
+        self.operator.destroy()
+
 
 def factorise(
     store: Store,
@@ -77,11 +82,9 @@ def by_factors(store: Store, share: Vector, rhs: Vector) -> Answer:
 
 
 def drop_factors(store: Store) -> None:
-    """Free their memory now, not when Python finds the time."""
+    """Free their memory."""
     if "factors" in store:
-        old: Factors = store.pop("factors")
-        old.solver.destroy()
-        old.operator.destroy()
+        store.pop("factors").destroy()
 
 
 def saddle_rows(matrix: Foreign, n: int, more: Sparse | None, given: Conditions) -> Sparse:
@@ -141,28 +144,37 @@ def _refill(factors: Factors, rows: Sparse) -> None:
     factors.solver.setUp()
 
 
-def _factors(rows: Sparse, pattern: Sparse, symmetric: bool, comm: Foreign) -> Factors:
+def factors_of(rows: Sparse, comm: Foreign, accurate: float) -> Factors:
+    """Of a symmetric matrix of which this process has ``rows``, whose negative eigenvalues can be counted. accurate:
+    residual from which on solutions are refined."""
+    return _factors(rows, _ones(rows), True, comm, accurate, counted=True)
+
+
+def _factors(
+    rows: Sparse, pattern: Sparse, symmetric: bool, comm: Foreign, accurate: float = REFINED, counted: bool = False
+) -> Factors:
     """rows: this process's of the matrix."""
     from petsc4py import PETSc
 
     operator = matrix_of(rows, comm)
     operator.setOption(PETSc.Mat.Option.SYMMETRIC, symmetric)
     for workspace in WORKSPACE:
-        solver = _direct(operator, symmetric, workspace)
+        solver = _direct(operator, symmetric, workspace, accurate, counted)
         if workspace == WORKSPACE[-1] or not ran_out(solver.getPC()):
             break
         solver.destroy()
     return Factors(solver, operator, pattern, symmetric)
 
 
-def _direct(operator: Foreign, symmetric: bool, workspace: int) -> Foreign:
-    """PETSc's solver with the factors of a matrix. workspace: in per cent over MUMPS's own estimate."""
+def _direct(operator: Foreign, symmetric: bool, workspace: int, accurate: float, counted: bool) -> Foreign:
+    """PETSc's solver with the factors of a matrix. workspace: in per cent over MUMPS's own estimate; accurate: residual from
+    which on solutions are refined; counted: pivots tell how many eigenvalues are negative."""
     from petsc4py import PETSc
 
     solver = PETSc.KSP().create(operator.comm)
     solver.setOperators(operator)
     solver.setType("fgmres")
-    solver.setTolerances(rtol=REFINED, atol=0.0, max_it=REFINEMENTS)
+    solver.setTolerances(rtol=accurate, atol=0.0, max_it=REFINEMENTS)
     package = direct_solver()
     preconditioner = solver.getPC()
     preconditioner.setType("cholesky" if symmetric and package == "mumps" else "lu")
@@ -171,6 +183,8 @@ def _direct(operator: Foreign, symmetric: bool, workspace: int) -> Foreign:
         preconditioner.setFactorSetUpSolverType()
         preconditioner.getFactorMatrix().setMumpsIcntl(14, workspace)
         preconditioner.getFactorMatrix().setMumpsIcntl(24, 1)  # a body that spins freely stays as it is: no failure
+        if counted:
+            preconditioner.getFactorMatrix().setMumpsIcntl(13, 1)  # ScaLAPACK, for the last front, does not count
     if PETSc.Options().getString("pc_type", FACTORS[0]) in FACTORS:
         solver.setFromOptions()
     solver.setUp()

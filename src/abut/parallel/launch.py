@@ -30,6 +30,14 @@ RECIPE = """it takes petsc4py and mpi4py, which belong to an MPI:
                   pip install .
 (docs/mpi.md says more)"""
 
+DEBIAN_SLEPC = Path("/usr/lib/slepcdir")
+SLEPC = """install it from where petsc4py is:
+  pip install ".[mpi]" (Linux on x86-64, Python 3.12 or newer): dolfinx-solver-real, which has both
+  Debian, Ubuntu:      apt-get install python3-slepc4py
+                       export SLEPC_DIR=$(echo /usr/lib/slepcdir/slepc3*/*-real)
+  conda:               conda install -c conda-forge slepc4py
+One process without PETSc (solve.linear) finds them as well"""
+
 
 def processes() -> int:
     """How many processes were started together, as whoever started them says; 1 where nobody does."""
@@ -73,6 +81,18 @@ def require() -> None:
         )
 
 
+def require_slepc() -> None:
+    """Raise InputError, with what to install, where slepc4py is missing or does not go with petsc4py. Starts MPI."""
+    require()
+    try:
+        importlib.import_module("slepc4py.lib").ImportSLEPc()
+    except (ImportError, AttributeError, ValueError) as error:
+        raise InputError(
+            f"{_missing('slepc4py', error)}: frequencies and buckling on several processes, or by PETSc, take it beside "
+            f"petsc4py: {_slepc_hint()}{SLEPC}"
+        ) from None
+
+
 def _bundle() -> None:
     """Import the package that brings PETSc in wheels, where there is one: it loads its MPI before what is bound to it.
     Raises InputError with its own words where another petsc4py or MPI is in its way."""
@@ -96,6 +116,16 @@ def unused(options: Sequence[str]) -> list[str]:
         if not asked.value:
             result.append(option)
     return result
+
+
+def _slepc_hint() -> str:
+    """What to set where Debian's slepc4py is there but Python has not been told."""
+    if os.environ.get("SLEPC_DIR"):
+        return ""
+    found = sorted(str(path) for path in DEBIAN_SLEPC.glob("slepc3*/*-real") if (path / PYTHON / "slepc4py").is_dir())
+    return (
+        f"it is on this machine, for Debian's own Python after\n  export SLEPC_DIR={found[-1]}\nElse " if found else ""
+    )
 
 
 def _missing(name: str, error: Exception) -> str:

@@ -149,7 +149,7 @@ class Direct:
             s = saddle(self.system.unit, self.system.operator, replace(rows, residual=of_law), residual)
             shares = layout.shares(s.rhs_u)
             arguments = [(share, np.zeros(0) if rank else s.rhs_p) for rank, (share,) in enumerate(shares)]
-            solution, q = self._checked(team.each(by_factors, per_rank=arguments))
+            solution, q = checked(team.each(by_factors, per_rank=arguments), layout)
             return solution, s.pressure(q)
 
         return solve
@@ -167,17 +167,7 @@ class Direct:
         if not (answers[0].error < SINGULAR or answers[0].memory):  # perhaps for an analysis made for other values
             team.each(drop_factors)
             answers = team.each(factorise, matrix.kept.number, n, symmetric, per_rank=arguments)
-        return self._checked(answers)
-
-    def _checked(self, answers: list[Answer]) -> tuple[Vector, Vector]:
-        if answers[0].memory:
-            raise InputError(
-                "not enough memory for PETSc's direct solver; take more processes or machines, or a coarser mesh, or, in "
-                '3D, law "complementarity" and no equations, which multigrid can solve'
-            )
-        if not answers[0].error < SINGULAR:
-            raise SingularModelError("the equations have no unique solution; check supports, contacts and units")
-        return displacement(answers, self.matrix.layout), answers[0].pressure
+        return checked(answers, matrix.layout)
 
 
 @dataclass(frozen=True)
@@ -345,6 +335,18 @@ def _of_functions(pair: Pair) -> Sparse:
     shape = len(pair), len(pair.index)
     by = sp.csr_matrix((np.ones(len(function)), (pair.index[function, component], function)), shape=shape)
     return (by @ by.T).tocsr()
+
+
+def checked(answers: list[Answer], layout: Layout) -> tuple[Vector, Vector]:
+    """Displacements (n_free,) and pressures by factors. Raises InputError where memory does not do, SingularModelError."""
+    if answers[0].memory:
+        raise InputError(
+            "not enough memory for PETSc's direct solver; take more processes or machines, or a coarser mesh, or, in "
+            '3D, law "complementarity" and no equations, which multigrid can solve'
+        )
+    if not answers[0].error < SINGULAR:
+        raise SingularModelError("the equations have no unique solution; check supports, contacts and units")
+    return displacement(answers, layout), answers[0].pressure
 
 
 def displacement(answers: list[Answer], layout: Layout) -> Vector:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -47,13 +47,32 @@ class Distributed:
         own = self.layout.values(self.team.each(_product, self.kept.number, per_rank=self.layout.shares(values)))
         return own if self.beside is None else np.asarray(own + self.beside @ values)
 
-    def __add__(self, other: Sparse) -> Distributed:
+    def __add__(self, other: Sparse | Distributed) -> Distributed:
+        if isinstance(other, Distributed):
+            kept, more = self._made(_sum, other.kept.number), other.beside
+            return replace(self, kept=kept) if more is None else replace(self, kept=kept) + more
         return replace(self, beside=other.tocsr() if self.beside is None else self.beside + other)
+
+    def __rmul__(self, factor: float) -> Distributed:
+        beside = None if self.beside is None else factor * self.beside
+        return replace(self, kept=self._made(_scaled, factor), beside=beside)
+
+    @property
+    def T(self) -> Distributed:
+        """Transposed."""
+        beside = None if self.beside is None else self.beside.T.tocsr()
+        return replace(self, kept=self._made(_transposed), beside=beside)
+
+    def _made(self, function: Callable[..., Foreign], *arguments: float) -> Kept:
+        """What function(PETSc's matrix, store, *arguments) returns, kept by every process."""
+        kept = self.team.keep()
+        self.team.each(_make, function, self.kept.number, kept.number, *arguments)
+        return kept
 
     def __radd__(self, other: Sparse | int) -> Distributed:
         return self if isinstance(other, int) else self + other  # a sum begins with zero
 
-    def __sub__(self, other: Sparse) -> Distributed:
+    def __sub__(self, other: Sparse | Distributed) -> Distributed:
         return self + -1.0 * other
 
     def beside_by_process(self) -> list[Sparse | None]:
@@ -93,25 +112,29 @@ def tell(store: Store, slot: NDArray[np.int64], free: Sparse) -> None:
     store["variables"] = slot, free
 
 
-def reduce(store: Store, tangent: str | int, into: int, starts: NDArray[np.int64], block: int) -> None:
+def reduce(
+    store: Store, tangent: str | int, into: int, starts: NDArray[np.int64], block: int, added: bool = False
+) -> None:
     """Build PETSc's matrix of a tangent stiffness on the free displacements and keep it under the number ``into``.
 
     tangent: where the part's own is; it goes, to make room, unless it is to be reduced again. starts, block: as in
-    ``Layout``. Rows at the border between parts get what the others have of them."""
+    ``Layout``; added: to a stiffness: the part's own stays, and padding is zero. Rows at the border between parts get what
+    the others have of them."""
     from petsc4py import PETSc
 
     comm = PETSc.COMM_WORLD
     slot, free = store["variables"]
     first, last = (int(i) for i in (starts[comm.rank], starts[comm.rank + 1]))
-    own = store[tangent] if tangent == "stiffness" and store["again"] else store.pop(tangent)
+    stays = added or (tangent == "stiffness" and store["again"])
+    own = store[tangent] if stays else store.pop(tangent)
     rows = _own_rows(own, slot, free, block, starts // block, comm.tompi4py()).tocsr()
-    if block == 1:
+    if block == 1 or added:  # of stresses that are zero nothing may be stored
         rows = _with_diagonal(rows, first)
     matrix = matrix_of(rows, comm)
     matrix.setBlockSize(block)
     padding = np.ones(last - first, dtype=bool)
     padding[slot[(slot >= first) & (slot < last)] - first] = False
-    _set_diagonal(matrix, np.where(padding, _largest(matrix, block), _local(matrix)))
+    _set_diagonal(matrix, np.where(padding, 0.0 if added else _largest(matrix, block), _local(matrix)))
     store[into] = matrix
 
 
@@ -186,6 +209,26 @@ def _set_diagonal(matrix: Foreign, values: NDArray[np.float64]) -> None:
     diagonal = matrix.createVecLeft()
     diagonal.array[:] = values
     matrix.setDiagonal(diagonal)
+
+
+def _make(store: Store, function: Callable[..., Foreign], number: int, into: int, *arguments: float) -> None:
+    store[into] = function(store[number], store, *arguments)
+
+
+def _sum(matrix: Foreign, store: Store, other: int) -> Foreign:
+    result = matrix.copy()
+    result.axpy(1.0, store[other], result.Structure.DIFFERENT_NONZERO_PATTERN)
+    return result
+
+
+def _scaled(matrix: Foreign, store: Store, factor: float) -> Foreign:
+    result = matrix.copy()
+    result.scale(factor)
+    return result
+
+
+def _transposed(matrix: Foreign, store: Store) -> Foreign:
+    return matrix.transpose(type(matrix)())
 
 
 def _diagonal(store: Store, number: int) -> NDArray[np.float64]:

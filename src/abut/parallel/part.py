@@ -4,6 +4,7 @@ Cells that turn inside out are returned, not raised: the others would wait for a
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -13,10 +14,13 @@ from numpy.typing import NDArray
 from abut.bodies.assemble import internal_force, respond, stiffness
 from abut.bodies.evaluation import History
 from abut.bodies.inverted import Inverted
+from abut.bodies.mass import mass
 from abut.bodies.solids import Solids, TemperatureChange
 from abut.bodies.stress import PointStress, point_stress
+from abut.bodies.stress_stiffness import stress_stiffness
 from abut.materials.kernel import Since
 from abut.parallel.team import Store
+from abut.types import Array
 
 
 class InsideOut(NamedTuple):
@@ -88,6 +92,20 @@ def deform(
     if number is not None:
         store[number] = response.tangent
     return response.force, float(response.energy.sum()), response.history
+
+
+def keep_mass(store: Store, number: int, densities: Mapping[str, float], along: Array | None) -> None:
+    """Keep the mass of this part, as of ``abut.bodies.mass.mass``, under a number."""
+    part: Solids = store["part"]
+    n = part.mesh.points.size
+    store[number] = mass(part.mesh, densities, along) if part.mesh.n_cells else sp.csr_matrix((n, n))
+
+
+def keep_stress_stiffness(store: Store, number: int, stress: PointStress) -> None:
+    """Keep what stresses at its integration points add to this part's stiffness under a number."""
+    part: Solids = store["part"]
+    n = part.mesh.points.size
+    store[number] = stress_stiffness(part, stress) if part.mesh.n_cells else sp.csr_matrix((n, n))
 
 
 def product(store: Store, number: int, values: NDArray[np.float64]) -> NDArray[np.float64]:

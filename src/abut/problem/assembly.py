@@ -51,6 +51,7 @@ class Assembled:
     problem: ContactProblem
     bodies: Bodies
     loaded: Loads
+    backend: Backend
 
 
 def prescribed(model: Model) -> tuple[Constraints, Loads]:
@@ -117,7 +118,7 @@ def assemble(
     _describe_cells(model, note)
     note(f"{reduced.shape[0]} free displacements, {sum(map(len, every))} multipliers")
     clock.mark("set-up")
-    return Assembled(problem, bodies, loaded)
+    return Assembled(problem, bodies, loaded, backend)
 
 
 def connected(model: Model, constraints: Constraints) -> Connectors | None:

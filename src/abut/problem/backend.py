@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -11,8 +12,10 @@ from numpy.typing import NDArray
 
 from abut.bodies.assemble import respond, stiffness_at_rest
 from abut.bodies.evaluation import History
+from abut.bodies.mass import mass
 from abut.bodies.solids import TemperatureChange
 from abut.bodies.stress import PointStress, point_stress
+from abut.bodies.stress_stiffness import stress_stiffness
 from abut.contact.coupling import Coupling, CouplingOptions, couple
 from abut.contact.coupling_tangent import ContactLoad, CouplingTangent, differentiated
 from abut.contact.moving_normals import MovingNormals
@@ -20,8 +23,8 @@ from abut.materials.kernel import Since
 from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.problem.constraints import Constraints
-from abut.problem.terms import Tangent
-from abut.types import Operator
+from abut.problem.terms import MatrixTangent, Tangent
+from abut.types import Array, Operator
 
 
 @dataclass(frozen=True)
@@ -66,6 +69,14 @@ class Backend(Tangent, Protocol):
     ) -> Deformed:
         """At displacements (n_points, dim), after a history; since: as in ``abut.bodies.assemble.respond``.
         Raises ``abut.bodies.inverted.Inverted``."""
+        ...
+
+    def mass(self, densities: Mapping[str, float], along: Array | None = None) -> Tangent:
+        """Of bodies, as ``abut.bodies.mass.mass``."""
+        ...
+
+    def stress_stiffness(self, stress: PointStress) -> Tangent:
+        """Of stresses as from ``stress``, as ``abut.bodies.stress_stiffness.stress_stiffness``."""
         ...
 
 
@@ -113,6 +124,14 @@ class Serial:
         response = respond(self.model.deformable, displacement, change, history, tangent, since)
         slope = Serial(self.model, response.tangent) if tangent else None
         return Deformed(response.force, slope, float(response.energy.sum()), response.history)
+
+    def mass(self, densities: Mapping[str, float], along: Array | None = None) -> Tangent:
+        """As in ``Backend``."""
+        return MatrixTangent(mass(self.model.mesh, densities, along))
+
+    def stress_stiffness(self, stress: PointStress) -> Tangent:
+        """As in ``Backend``."""
+        return MatrixTangent(stress_stiffness(self.model.deformable, stress))
 
 
 def serial(model: Model) -> Serial:
