@@ -31,7 +31,7 @@ class Factors:
         largest = abs(rows).max(axis=1).toarray().ravel() if rows.shape[0] else np.zeros(0)
         scale = unit / np.maximum(largest, 1e-300)
         corner = sp.diags(-(scale**2) * held.give)
-        upper = sp.triu(self.matrix, format="csr")
+        upper = direct.upper(self.matrix.tocsr())
         below = (sp.diags(scale) @ rows).tocsr()
         whole = sp.bmat([[upper, below.T], [None, corner]], format="csr") if rows.shape[0] else upper
         object.__setattr__(self, "_scale", scale)
