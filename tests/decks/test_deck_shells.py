@@ -196,6 +196,18 @@ def test_meshes_of_shells_alone(tmp_path: Path) -> None:
         Mesh.read(write(tmp_path, strip()))
 
 
+def test_flat_shells_of_calculix_are_those_of_three_nodes(tmp_path: Path) -> None:
+    """US3 with *USER ELEMENT and *USER SECTION, whose first constant is the thickness."""
+    push = step("*DLOAD", "EALL, P, 1.E-3")
+    user = strip("US3").replace(
+        "*SHELL SECTION, ELSET=EALL, MATERIAL=M", "*USER SECTION, ELSET=EALL, MATERIAL=M, CONSTANTS=1"
+    )
+    user += "*USER ELEMENT, TYPE=US3, NODES=3, INTEGRATION POINTS=3, MAXDOF=6\n"
+    same = solve(tmp_path, strip("S3") + push)
+    assert (solve(tmp_path, user + push).displacement == same.displacement).all()
+    assert any("C3D15 instead of a flat shell" in note for note in load(tmp_path, user + push).notes)
+
+
 def test_in_an_assembly(tmp_path: Path) -> None:
     """Sections, thickness and normals of a part go with its instance."""
     text = strip(section=", NODAL THICKNESS") + f"*NODAL THICKNESS\nALL, {THICK}\n*NORMAL\nEALL, ALL, 0., 0., 1.\n"

@@ -320,7 +320,11 @@ def _without_virtual(
         ("boundary", virtual.supported, "follows it"),
     ):
         for point, course in given.items():
-            if point not in bound and not zero(course):
+            if (
+                point not in bound
+                and not zero(course)
+                and not (kind == "boundary" and _among_others(deck, point, used))
+            ):
                 raise _nothing(
                     deck, kind, point, f"belongs to no element and no equation in this direction; nothing {what}"
                 )
@@ -338,6 +342,14 @@ def _put_in(bond: Bond, known: Mapping[Point, Bond]) -> Bond:
         terms.pop(point)
         bond = replace(bond, terms=terms, course=combine([(1.0, bond.course), (-share, by.course)]))
     return bond
+
+
+def _among_others(deck: Deck, point: Point, used: set[int]) -> bool:
+    """Whether the lines that move a node of no element have other nodes, which do belong to some: it is left in a set."""
+    node, axis = point
+    every = [*deck.fixed, *(value for step in deck.steps for value in step.values)]
+    mine = [v for v in every if v.kind == "boundary" and axis + 1 in v.directions and node in v.numbers]
+    return all(not used.isdisjoint(value.numbers.tolist()) for value in mine)
 
 
 def _place(deck: Deck, kind: str, point: Point, moving: bool = False) -> Place:
