@@ -8,7 +8,7 @@ import pytest
 from abut.errors import InputError
 from abut.io.deck import read_deck
 from abut.mesh.mesh import Mesh
-from models.decks import load, solve, step, write
+from models.decks import BRICKS, HELD, load, solve, step, write
 
 PART = """*HEADING
 *PART, NAME=Brick
@@ -154,3 +154,17 @@ def test_sets_that_abaqus_makes_for_itself_are_not_proposed(tmp_path):
                 "Assembly.FAR", "QQQ"
             ),
         )
+
+
+def test_what_is_left_of_an_assembly_taken_out_by_hand(tmp_path):
+    flat = (
+        BRICKS + HELD + "*NSET, NSET=MORE, INSTANCE=Part-1-1\n15, 16\n*END ASSEMBLY\n" + step("*CLOAD", "MORE, 3, 1.")
+    )
+    job = load(tmp_path, flat)
+    told = [note.partition(": ")[2] for note in job.notes if "left out" in note]
+    assert told == [
+        "*NSET: INSTANCE: the deck has no instances: left out",
+        "*END ASSEMBLY: nothing begins that ends here: left out",
+    ]
+    plain = load(tmp_path, flat.replace(", INSTANCE=Part-1-1", "").replace("*END ASSEMBLY\n", ""))
+    assert plain.model.loads == job.model.loads

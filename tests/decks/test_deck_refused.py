@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+import abut
 from abut.cli import main
 from abut.errors import InputError
 from abut.io.deck.cards import key
@@ -264,6 +265,20 @@ def test_supports_that_hold_nothing_are_noted(tmp_path):
         assert f"{tmp_path / 'deck.inp'}:{line}: *BOUNDARY: node {node} {what}: the line holds nothing" in job.notes
         assert len(job.model.supports) == len(load(tmp_path, DECK).model.supports)
     assert not any("holds nothing" in note for note in load(tmp_path, DECK).notes)
+
+
+def test_nodes_without_elements_in_a_set_that_moves_are_noted(tmp_path):
+    more = "*NODE\n98, 5., 5., 5.\n99, 5., 5., 5.\n*NSET, NSET=MOVED\nTOP, 98, 99\n*STEP"
+    text = DECK.replace("*STEP", more).replace("*DLOAD\n2, P2, 10.", "*BOUNDARY\nMOVED, 3, 3, -0.1")
+    line = text.splitlines().index("MOVED, 3, 3, -0.1") + 1
+    job = load(tmp_path, text)
+    words = "*BOUNDARY: node 98 and 1 more belong to no element: nothing follows there"
+    assert f"{tmp_path / 'deck.inp'}:{line}: {words}" in job.notes
+    kept = load(tmp_path, text.replace("MOVED, 3, 3", "TOP, 3, 3"))
+    one, other = (abut.solve(each.model).displacement for each in (job, kept))
+    assert (one == other).all()
+    with pytest.raises(InputError, match="node 98 belongs to no element and no equation"):
+        load(tmp_path, text.replace("TOP, 98, 99\n", "98, 99\n"))
 
 
 def test_members_that_are_missing_are_left_out_with_a_note(tmp_path):

@@ -196,6 +196,18 @@ def test_meshes_of_shells_alone(tmp_path: Path) -> None:
         Mesh.read(write(tmp_path, strip()))
 
 
+def test_flat_shells_of_calculix_are_those_of_three_nodes(tmp_path: Path) -> None:
+    """US3 with *USER ELEMENT and *USER SECTION, whose first constant is the thickness."""
+    push = step("*DLOAD", "EALL, P, 1.E-3")
+    user = strip("US3").replace(
+        "*SHELL SECTION, ELSET=EALL, MATERIAL=M", "*USER SECTION, ELSET=EALL, MATERIAL=M, CONSTANTS=1"
+    )
+    user += "*USER ELEMENT, TYPE=US3, NODES=3, INTEGRATION POINTS=3, MAXDOF=6\n"
+    same = solve(tmp_path, strip("S3") + push)
+    assert (solve(tmp_path, user + push).displacement == same.displacement).all()
+    assert any("C3D15 instead of a flat shell" in note for note in load(tmp_path, user + push).notes)
+
+
 def test_in_an_assembly(tmp_path: Path) -> None:
     """Sections, thickness and normals of a part go with its instance."""
     text = strip(section=", NODAL THICKNESS") + f"*NODAL THICKNESS\nALL, {THICK}\n*NORMAL\nEALL, ALL, 0., 0., 1.\n"
@@ -263,3 +275,63 @@ def test_on_the_edge_of_a_brick(tmp_path: Path) -> None:
     points = solution.model.mesh.points
     middle = (np.abs(points[:, 2] - 1.0) < 1e-9) & (np.abs(points[:, 1] - 0.5) < 1e-9)
     assert solution.displacement[middle].mean(axis=0) == pytest.approx([0.0, 0.0, 0.0], abs=1e-9)
+
+
+def joined(place: Place, cut: bool, section: str = "") -> str:
+    """The strip of ten S8R, or its two halves whose edges equations join in all six directions."""
+    text = strip("S8R", place=place, section=section)
+    if not cut:
+        return text
+    nodes, rest = text.split("*ELEMENT, TYPE=S8R, ELSET=EALL\n", 1)
+    elements, more = rest.split("*NSET, NSET=LEFT\n", 1)
+    points = {int(row.split(",")[0]): row.split(",", 1)[1] for row in nodes.splitlines()[1:]}
+    rows = [[int(n) for n in row.split(",")] for row in elements.splitlines()]
+    left, right = ({n for row in rows if (row[0] <= 10) == first for n in row[1:]} for first in (True, False))
+    twins = {n: n + 1000 for n in left & right}
+    new = [row if row[0] <= 10 else [row[0], *(twins.get(n, n) for n in row[1:])] for row in rows]
+    lines = [*nodes.splitlines(), *(f"{twins[n]},{points[n]}" for n in twins), "*ELEMENT, TYPE=S8R, ELSET=EALL"]
+    lines += [", ".join(map(str, row)) for row in new] + ["*EQUATION"]
+    lines += [f"2\n{twin}, {d}, 1., {n}, {d}, -1." for n, twin in twins.items() for d in range(1, 7)]
+    return "\n".join([*lines, "*NSET, NSET=LEFT", more])
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.5])
+def test_equations_of_turns_join_edges(angle: float, tmp_path: Path) -> None:
+    """Two halves that move and turn alike where they meet are one strip, also where axes of turns lie across the normal.
+    Without Poisson's ratio, by which a joined edge keeps its thickness."""
+
+    def place(x: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.array([x[0] * np.cos(angle), x[1], x[0] * np.sin(angle)])
+
+    push = step("*CLOAD", "RIGHT, 3, 0.1", "RIGHT, 2, 0.1")
+    ends = []
+    for cut in (True, False):
+        solution = solve(tmp_path, joined(place, cut) + push)
+        points, u = solution.model.mesh.points, solution.displacement
+        far = np.flatnonzero(points @ [np.cos(angle), 0.0, np.sin(angle)] > LENGTH - 1e-9)
+        ends.append(u[far].mean(axis=0))
+    assert ends[0] == pytest.approx(ends[1], rel=1e-5)
+    assert abs(ends[0]).max() > 0.01 * LENGTH
+
+
+def test_an_equation_that_turns_an_edge(tmp_path: Path) -> None:
+    """Turns that equations give are those that supports give: of a node of no element, by its displacement."""
+    text = strip("S8R")
+    edge = text.split("*NSET, NSET=RIGHT\n")[1].split("*BOUNDARY")[0].replace(",", "").split()
+    by_support = solve(tmp_path, text + step("*BOUNDARY", *(f"{n}, 5, 5, 0.01" for n in edge)))
+    text = text.replace("*NSET, NSET=LEFT", "*NODE\n999, 0., 0., 5.\n*NSET, NSET=LEFT", 1)
+    text += "*EQUATION\n" + "".join(f"2\n{n}, 5, 1., 999, 1, -1.\n" for n in edge)
+    by_equation = solve(tmp_path, text + step("*BOUNDARY", "999, 1, 1, 0.01"))
+    assert at(by_equation, LENGTH, 0.0) == pytest.approx(at(by_support, LENGTH, 0.0), rel=1e-4, abs=1e-9)
+    assert at(by_equation, LENGTH, 0.0)[2] == pytest.approx(-0.01 * LENGTH / 2, rel=1e-3)  # even bending
+
+
+def test_turns_in_equations_refused(tmp_path: Path) -> None:
+    text = joined(lambda x: x, True)
+    with pytest.raises(InputError, match="EQUATION: turns of nodes of shells need small displacements"):
+        load(tmp_path, text + step("*CLOAD", "RIGHT, 3, 0.1").replace("*STEP", "*STEP, NLGEOM"))
+    with pytest.raises(InputError, match="direction 7: expected 1 to 3"):
+        load(tmp_path, text.replace(", 6, 1.,", ", 7, 1.,") + step("*CLOAD", "RIGHT, 3, 0.1"))
+    bricks = BRICKS + "*EQUATION\n2\n15, 4, 1., 16, 4, -1.\n"
+    with pytest.raises(InputError, match="EQUATION: direction 4: node 15 has no turn of its own"):
+        load(tmp_path, bricks + step("*DLOAD", "2, P2, 10."))

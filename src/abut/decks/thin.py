@@ -155,6 +155,14 @@ def _check_turned(deck: Deck, thin: Mapping[int, Thin]) -> None:
                     f"{what} at nodes of shells need small displacements; leave NLGEOM out, or couple the nodes of the edge "
                     "to a node of its own (*COUPLING) and move that",
                 )
+    for equation in deck.equations:
+        if any(
+            direction > 3 and node in thin and thin[node].along is not None for node, direction, _ in equation.terms
+        ):
+            raise DeckError(
+                equation.place,
+                "*EQUATION: turns of nodes of shells need small displacements; leave NLGEOM out, or join the edges by *TIE",
+            )
 
 
 def renamed(deck: Deck, stand_for: Mapping[int, Numbers], heights: Mapping[int, float]) -> Deck:

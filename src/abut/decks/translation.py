@@ -278,6 +278,11 @@ def _idle(deck: Deck, groups: Groups) -> list[str]:
             node = int(value.numbers[0])
             what = "belongs to no element and no equation" if node in given else "does not exist"
             notes[f"{value.place}: *BOUNDARY: node {node} {what}: the line holds nothing"] = None
+        elif value.kind == "boundary" and value.value != 0.0 and (lost := {*value.numbers.tolist()} - made):
+            more = f" and {len(lost) - 1} more" if len(lost) > 1 else ""
+            notes[f"{value.place}: *BOUNDARY: node {min(lost)}{more} belong to no element: nothing follows there"] = (
+                None
+            )
     return [*notes, *([f"cards without effect on the result: {', '.join(deck.quiet)}"] if deck.quiet else [])]
 
 

@@ -22,6 +22,7 @@ SINGULAR = 1e-6  # relative residual above which the matrix is taken for singula
 # Of PARDISO: own settings (1); nested dissection (2); refinement steps (8); pivots perturbed below 10^-k (10), where
 # refinement makes good what a larger perturbation spoils; scaling and matching (11, 13); Bunch-Kaufman pivots, refined (21).
 SETTINGS = {1: 1, 2: 2, 8: 10, 10: 8, 11: 1, 13: 1, 18: 0, 21: 3}
+UNMATCHED = {11: 0, 13: 0}  # without scaling and matching
 
 
 @functools.lru_cache(maxsize=1)
@@ -86,17 +87,16 @@ def factorized(matrix: Sparse, *, definite: bool = False) -> Callable[[NDArray[n
         solver = module.PyPardisoSolver(mtype=POSITIVE_DEFINITE if definite else SYMMETRIC_INDEFINITE)
         for key, value in {1: 1, 2: 2, 8: 2, 10: 8, 11: int(not definite), 13: int(not definite), 21: 1}.items():
             solver.iparm[key - 1] = value
-        upper = sp.triu(matrix, format="csr")
-        upper.sort_indices()
-        analyse(solver, upper, np.zeros(upper.shape[0]))
+        half = upper(matrix)
+        analyse(solver, half, np.zeros(half.shape[0]))
         solver.set_phase(22)
-        solver._call_pardiso(upper, np.zeros(upper.shape[0]))
+        solver._call_pardiso(half, np.zeros(half.shape[0]))
     except failures as error:
         raise SingularModelError(f"the direct solver failed ({error}); check supports and contacts") from None
 
     def solve(b: NDArray[np.float64]) -> NDArray[np.float64]:
         solver.set_phase(33)
-        return np.asarray(solver._call_pardiso(upper, np.asfortranarray(b)))
+        return np.asarray(solver._call_pardiso(half, np.asfortranarray(b)))
 
     return solve
 
@@ -110,7 +110,7 @@ class Factorization:
     def __init__(self, matrix: Sparse, *, quick: bool = False, symmetric: bool = True) -> None:
         self._matrix, self._symmetric = matrix, symmetric
         self._refinements = (0, SETTINGS[8]) if quick else (SETTINGS[8],)
-        self._solver = None if pardiso() is None else solver_of(symmetric, SETTINGS)
+        self._solver = None if pardiso() is None else solver_of(symmetric, settings_for(matrix, symmetric))
         if self._solver is None:
             return
         weakref.finalize(self, self._solver.free_memory, everything=True)
@@ -149,6 +149,12 @@ def solver_of(symmetric: bool, settings: dict[int, int]) -> Foreign:
     for key, value in settings.items():
         solver.iparm[key - 1] = value
     return solver
+
+
+def settings_for(matrix: Sparse, symmetric: bool) -> dict[int, int]:
+    """PARDISO looks for a matching of rows and columns with large entries, which takes as long as the rest of its analysis:
+    only where the diagonal of a symmetric matrix is not positive all through, as it is of bodies alone."""
+    return SETTINGS if not symmetric or (matrix.diagonal() <= 0.0).any() else SETTINGS | UNMATCHED
 
 
 def failures() -> type[Exception]:
@@ -246,6 +252,19 @@ def residual(matrix: Sparse, x: NDArray[np.float64], rhs: NDArray[np.float64], s
     return float(min(plain, (miss / np.maximum(bound, 1e-300)).max()))
 
 
+def upper(matrix: Sparse) -> Sparse:
+    """The upper triangle of a square matrix (CSR), columns in order, diagonal included where it is stored.
+
+    SciPy's triu goes through coordinates, which takes as long as a third of PARDISO's analysis."""
+    matrix.sort_indices()
+    rows = np.repeat(np.arange(matrix.shape[0], dtype=matrix.indices.dtype), np.diff(matrix.indptr))
+    kept = matrix.indices >= rows
+    before = np.concatenate([[0], np.cumsum(kept)])  # entries kept up to each
+    return sp.csr_matrix(
+        (matrix.data[kept], matrix.indices[kept], before[matrix.indptr].astype(matrix.indptr.dtype)), shape=matrix.shape
+    )
+
+
 def store_diagonal(matrix: Sparse) -> Sparse:
     """The same matrix with every diagonal entry stored (PARDISO wants zeros on the diagonal to be present)."""
     n = matrix.shape[0]
@@ -267,7 +286,7 @@ def store_diagonal(matrix: Sparse) -> Sparse:
 
 
 def _solve_pardiso(matrix: Sparse, rhs: NDArray[np.float64], symmetric: bool) -> NDArray[np.float64]:
-    solver = solver_of(symmetric, SETTINGS)
+    solver = solver_of(symmetric, settings_for(matrix, symmetric))
     try:
         analyse(solver, matrix, rhs)
         solver.set_phase(23)

@@ -83,7 +83,7 @@ def newton_step(
     stiffness: (n_u, n_u) sparse, symmetric if the rows are; operator and residual as in ``saddle``; repeated: of the
     systems before it, None where there is none like it."""
     if len(pressure) == 0:
-        matrix = sp.triu(stiffness, format="csr") if rows.symmetric else direct.store_diagonal(stiffness)
+        matrix = direct.upper(stiffness) if rows.symmetric else direct.store_diagonal(stiffness)
         return direct.solve(matrix, -residual, symmetric=rows.symmetric), pressure
     s = saddle(np.median(stiffness.diagonal()), operator, rows, residual)
     matrix, rhs = _whole(stiffness, s), np.concatenate([s.rhs_u, s.rhs_p])
@@ -127,7 +127,7 @@ class SaddlePoint:
         residual, n = np.concatenate([residual, np.zeros(more)]), len(residual)
         if self.system.about is not None and len(pressure) == 0:
             symmetric = self.system.symmetric
-            matrix = sp.triu(stiffness, format="csr") if symmetric else stiffness
+            matrix = direct.upper(stiffness) if symmetric else stiffness
             return self.repeated.solve(matrix, -residual, symmetric=symmetric)[:n], pressure
         repeated = None if self.system.about is None else self.repeated
         du, dp = newton_step(stiffness, operator, rows, residual, pressure, repeated)
@@ -151,7 +151,7 @@ class SaddlePoint:
     def respond(self, force: Vector, springs: Vector) -> Vector:
         """As in ``Prepared``."""
         sprung, more = with_border(self.system.stiffness + sp.diags(springs))
-        factors = direct.Factorization(direct.store_diagonal(sp.triu(sprung, format="csr")))
+        factors = direct.Factorization(direct.store_diagonal(direct.upper(sprung)))
         return factors.solve(np.concatenate([force, np.zeros(more)]))[: len(force)]
 
     def foresee(
@@ -173,7 +173,7 @@ def _with_border(stiffness: Operator, operator: Sparse, rows: Rows) -> tuple[Spa
 def _whole(stiffness: Sparse, s: Saddle) -> Sparse:
     """The matrix, only its upper triangle where it is symmetric."""
     if s.symmetric:
-        upper = sp.triu(stiffness, format="csr")
+        upper = direct.upper(stiffness)
         return sp.bmat([[upper, -s.coupled.T], [None, s.corner]], format="csr")
     columns = s.coupled.T.tocsr()
     above = _beside(stiffness, scaled(columns, np.full(columns.shape[0], -1.0)))

@@ -134,7 +134,7 @@ def condense(problem: ContactProblem) -> CondensedProblem | None:
         return None
     stiff, more = with_border(problem.stiffness)
     first = problem.n_free + more
-    upper, none = sp.triu(stiff), sp.csr_matrix((n_p, n_p))
+    upper, none = direct.upper(stiff.tocsr()), sp.csr_matrix((n_p, n_p))
     matrix = sp.bmat([[upper, -widened(problem.operator, more).T], [None, none]], format="csr")
     factorization = direct.partial_factorization(
         direct.store_diagonal(matrix), np.concatenate([kept, first + np.arange(n_p)])

@@ -27,7 +27,7 @@ class Factors:
 
     def __post_init__(self) -> None:
         scale, below, corner = beside(self.held)
-        upper = sp.triu(self.matrix, format="csr")
+        upper = direct.upper(self.matrix.tocsr())
         whole = sp.bmat([[upper, below.T], [None, corner]], format="csr") if len(scale) else upper
         object.__setattr__(self, "_scale", scale)
         object.__setattr__(self, "_factors", direct.Factorization(direct.store_diagonal(whole), quick=True))

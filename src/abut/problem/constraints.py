@@ -10,7 +10,6 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 from numpy.typing import NDArray
 
-from abut._core import principal_submatrix
 from abut.bordered import Bordered
 from abut.contact.geometry import nodal_normals
 from abut.dofs import dofs_at, n_dofs, n_places, place_of, widened
@@ -19,6 +18,7 @@ from abut.mesh.mesh import Mesh
 from abut.model import Model, Support
 from abut.problem.elimination import Links, contradiction_at_node, eliminate, row_products
 from abut.problem.other_fields import OtherFields
+from abut.problem.projection import projected
 from abut.problem.rigid_bodies import RigidBody, body_rows, rigid_bodies
 from abut.problem.sections import shortenings_of
 from abut.problem.turns import Turn, Turns, about
@@ -114,21 +114,13 @@ class Constraints:
         return np.asarray(here - near.free @ near.coordinates(here))
 
     def reduce(self, matrix: Sparse) -> Sparse:
-        """free^T matrix free, (n_free, n_free) CSR. Supports along the axes only pick rows and columns, which is faster.
+        """free^T matrix free, (n_free, n_free) CSR.
 
         matrix: over displacements, or over the values of all fields."""
         if self.others is not None and matrix.shape[0] > self.free.shape[0]:
             whole = self.others.whole(self.free)
-            return (whole.T @ matrix @ whole).tocsr()
-        picks = self.free.nnz == self.free.shape[1] and (self.free.data == 1.0).all()
-        if picks and matrix.nnz < 2**31:
-            place = np.full(matrix.shape[0], -1, dtype=np.int32)
-            place[self.free.tocsc().indices] = np.arange(self.free.shape[1])
-            indptr, indices, data = principal_submatrix(
-                matrix.indptr.astype(np.int32), matrix.indices, matrix.data, place, self.free.shape[1]
-            )
-            return sp.csr_matrix((data, indices, indptr), shape=(self.free.shape[1], self.free.shape[1]))
-        return (self.free.T @ matrix @ self.free).tocsr()
+            return projected(matrix.tocsr(), whole)
+        return projected(matrix.tocsr(), self.free)
 
     def reduced(self, matrix: Operator) -> Operator:
         """The same of a matrix that may have a border, which stays."""

@@ -48,9 +48,10 @@ def without_parts(cards: tuple[Card, ...], notes: list[str], reasons: Reasons) -
     """The cards of a deck, those of parts once for each instance: their sets and surfaces are called INSTANCE.NAME, their
     nodes and elements have numbers of their own. ``notes`` says which; ``reasons`` gets what is wrong.
 
-    A deck without parts and assembly stays as it is."""
+    A deck without parts and assembly stays as it is, but for what is left of them, as where their cards were taken out by
+    hand."""
     if not any(card.key in ENDS for card in cards):
-        return cards
+        return tuple(_left_over(cards, notes))
     flat, instances = _sorted_out(cards, notes, reasons)
     own = _largest(card for card in flat if isinstance(card, Card))
     step = 10 ** len(str(max([own, *(_largest(i.cards) for i in instances.values())])))
@@ -68,6 +69,18 @@ def without_parts(cards: tuple[Card, ...], notes: list[str], reasons: Reasons) -
             else:
                 result += _written_out(instances[item])
     return tuple(result)
+
+
+def _left_over(cards: Sequence[Card], notes: list[str]) -> Iterator[Card]:
+    """The cards without ends of parts that nothing begins, and without instances that there are none of."""
+    for card in cards:
+        if card.key in ENDS.values():
+            notes.append(f"{card.place}: {card.title}: nothing begins that ends here: left out")
+        elif card.key in ("NSET", "ELSET") and card.has("INSTANCE"):
+            notes.append(f"{card.place}: {card.title}: INSTANCE: the deck has no instances: left out")
+            yield replace(card, parameters={k: v for k, v in card.parameters.items() if k != key("INSTANCE")})
+        else:
+            yield card
 
 
 def _sorted_out(

@@ -97,6 +97,7 @@ def _shells() -> dict[str, ElementType]:
         "S3": ElementType("tri3", None, "reduced", middles.format("C3D15", "C3D6"), "shell"),
         "S4": ElementType("quad4", None, "reduced", middles.format("C3D20R", "C3D8I"), "shell"),
         "S4R": ElementType("quad4", None, "reduced", middles.format("C3D20R", "C3D8R"), "shell"),
+        "US3": ElementType("tri3", None, "reduced", middles.format("C3D15", "a flat shell").partition(";")[0], "shell"),
         "S6": ElementType("tri6", None, "reduced", "", "shell"),
         "S8": ElementType("quad8", None, "full", "", "shell"),
         "S8R": ElementType("quad8", None, "reduced", "", "shell"),

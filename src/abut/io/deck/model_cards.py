@@ -162,8 +162,8 @@ def _equations(head: Line, fields: list[tuple[Line, int]], mesh: MeshCards) -> l
 
 def _direction(line: Line, i: int) -> int:
     direction = line.integer(i, "direction")
-    if direction > 3:
-        raise line.error(f"direction {direction}: only displacements (1, 2, 3) are supported")
+    if direction > 6:
+        raise line.error(f"direction {direction}: expected 1 to 3 (displacements) or 4 to 6 (turns of nodes of shells)")
     return direction
 
 

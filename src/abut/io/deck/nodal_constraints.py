@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.io.deck.equation_terms import along_axes, check
 from abut.io.deck.groups import Groups
 from abut.io.deck.passing_supports import Stay, check_passing, passing
 from abut.io.deck.reasons import DeckError, Place
@@ -60,7 +61,7 @@ def bonds(deck: Deck, groups: Groups, plane: str | None) -> Bonds:
     """Work everything out. Raises InputError for forces on nodes that nothing carries, and for what contradicts itself."""
     used = set(groups.used.tolist())
     apart = deck.references.union(found.pilot for found in deck.gathered)
-    _check_equations(deck)
+    check(deck)
     axes = 2 if plane else 3
     stays = passing(deck)
     check_passing(deck, stays, {int(n) for t in deck.transforms for n in t.nodes}, used)
@@ -88,7 +89,10 @@ def bonds(deck: Deck, groups: Groups, plane: str | None) -> Bonds:
     supports, oblique = _supports(deck, {p: c for p, c in supported.items() if p[0] in used}, local, axes)
     forces = _spread({p: c for p, c in pushed.items() if p[0] in used}, local)
     own = {node: axes for node, axes in local.items() if node not in deck.thin or node in used}
-    equations = [*thin.bonds, *(Bond(_global(e.terms, own), NOTHING, e.place) for e in deck.equations)]
+    equations = [
+        *thin.bonds,
+        *(Bond(along_axes(e.terms, local, own, deck.thin), NOTHING, e.place) for e in deck.equations),
+    ]
     for symmetry in deck.cyclic:
         equations += _cyclic(deck, groups, symmetry)
     virtual = _Virtual(
@@ -168,18 +172,6 @@ def _of_thin(
         point: c for point, c in pushed.items() if point not in direct and (point[0] not in deck.thin or point[1] < 3)
     }
     return _OfThin(tuple(bonds), forces), kept, rest
-
-
-def _check_equations(deck: Deck) -> None:
-    """Raise InputError for an equation of a reference node, which is no displacement of any point."""
-    for equation in deck.equations:
-        for node, *_ in equation.terms:
-            if node in deck.references:
-                raise DeckError(
-                    equation.place,
-                    f"node {node} is the reference of a rigid body or coupling, and equations are for nodes of elements; "
-                    "give its displacement with *BOUNDARY, or write the equation for one of its points",
-                )
 
 
 def _on_axis(deck: Deck, groups: Groups) -> list[int]:
@@ -266,16 +258,6 @@ def _spread(pushed: Mapping[Point, Course], local: Mapping[int, Vector]) -> dict
     return {point: combine(terms) for point, terms in parts.items()}
 
 
-def _global(terms: tuple[tuple[int, int, float], ...], local: Mapping[int, Vector]) -> dict[Point, float]:
-    """Terms (node, direction, coefficient) along the global axes."""
-    result: dict[Point, float] = {}
-    for node, direction, coefficient in terms:
-        row = local[node][direction - 1] if node in local else np.eye(3)[direction - 1]
-        for k in np.flatnonzero(row).tolist():
-            result[node, k] = result.get((node, k), 0.0) + coefficient * float(row[k])
-    return result
-
-
 def _cyclic(deck: Deck, groups: Groups, symmetry: CyclicSymmetry) -> list[Bond]:
     """The displacement of every slave node is that of its master node, turned by one sector."""
     result, found = [], partners(deck, groups, symmetry)
@@ -320,7 +302,11 @@ def _without_virtual(
         ("boundary", virtual.supported, "follows it"),
     ):
         for point, course in given.items():
-            if point not in bound and not zero(course):
+            if (
+                point not in bound
+                and not zero(course)
+                and not (kind == "boundary" and _among_others(deck, point, used))
+            ):
                 raise _nothing(
                     deck, kind, point, f"belongs to no element and no equation in this direction; nothing {what}"
                 )
@@ -338,6 +324,14 @@ def _put_in(bond: Bond, known: Mapping[Point, Bond]) -> Bond:
         terms.pop(point)
         bond = replace(bond, terms=terms, course=combine([(1.0, bond.course), (-share, by.course)]))
     return bond
+
+
+def _among_others(deck: Deck, point: Point, used: set[int]) -> bool:
+    """Whether the lines that move a node of no element have other nodes, which do belong to some: it is left in a set."""
+    node, axis = point
+    every = [*deck.fixed, *(value for step in deck.steps for value in step.values)]
+    mine = [v for v in every if v.kind == "boundary" and axis + 1 in v.directions and node in v.numbers]
+    return all(not used.isdisjoint(value.numbers.tolist()) for value in mine)
 
 
 def _place(deck: Deck, kind: str, point: Point, moving: bool = False) -> Place:

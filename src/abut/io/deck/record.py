@@ -202,7 +202,7 @@ class GeneralContact:
 
 @dataclass(frozen=True)
 class Equation:
-    """Terms (node, direction 1..3, coefficient); value: their sum, with ``curve`` its course over the steps."""
+    """Terms (node, direction 1..3, of nodes of shells 4..6 for turns, coefficient), whose sum is zero."""
 
     terms: tuple[tuple[int, int, float], ...]
     place: Place

@@ -145,6 +145,7 @@ _SECTIONS = {
     "SOLIDSECTION": _section,
     "SHELLSECTION": _shell_section,
     "MEMBRANESECTION": _shell_section,
+    "USERSECTION": _shell_section,
     "BEAMSECTION": _beam_section,
     "BEAMGENERALSECTION": _beam_section,
 }

@@ -104,6 +104,14 @@ def turns(
     return result
 
 
+def turn_terms(node: int, thin: Thin, about: Vector) -> dict[Point, float]:
+    """Terms of the turn of a shell's node about an axis (3,), with that about the normal, which nothing resists, as an
+    unknown of its own: (-node, 0), a point of no element."""
+    normal = np.array(thin.along)
+    drill = float(about @ normal)
+    return _difference(thin, np.cross(about, normal)) | ({(-node, 0): drill} if abs(drill) > SMALL else {})
+
+
 def _shares(thin: Thin, direction: Vector) -> dict[Point, float]:
     """A vector in parts at each node."""
     return {
