@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from abut.linear.solver import Prepared
 from abut.nonlinear.friction_laws import Status, friction_laws, next_status
-from abut.nonlinear.iteration import Found, Increment, advance, largest_force, largest_pressure, points, report
+from abut.nonlinear.iteration import Found, Increment, advance, imbalance, largest_pressure, points, report
 from abut.nonlinear.newton import End, Method, newton
 from abut.problem.pair import Pair
 from abut.solution import Iteration
@@ -34,8 +34,8 @@ class Course:
         """A row of the table for a state and its status; the larger one of what laws and equilibrium have left."""
         seconds, missed = time.perf_counter() - clock, self._missed(state)
         largest = largest_pressure(state, self.increment)
-        row = report(self.solver.system, state, self.increment, len(self.done) + 1, changed, np.zeros(1), seconds)
-        row = replace(row, contact_residual=float(missed / largest))
+        both = imbalance(self.solver.system, state, self.increment), float(missed / largest)
+        row = report(self.solver.system, state, self.increment, len(self.done) + 1, changed, both, seconds)
         self.done.append(row)
         self.observe(row)
         self.recent = [*self.recent[1 - 2 * self.increment.settings.newton.patience :], state.status]
@@ -138,8 +138,7 @@ def advanced(solver: Prepared, state: State, increment: Increment, accuracy: flo
     system, asked = solver.system, increment.settings.accuracy
     for _ in range(1 if solver.exact else increment.settings.newton.patience):
         state = advance(solver, state, friction_laws(system, state), accuracy)
-        left = float(np.abs(system.unbalanced(state)).max(initial=0.0))
-        left /= largest_force(system, state, system.internal(state), increment)
+        left = imbalance(system, state, increment)
         if left <= asked.told:
             break
         accuracy = float(np.clip(asked.told / left, asked.stride, asked.spare))

@@ -97,16 +97,14 @@ def report(
     increment: Increment,
     count: int,
     changed: int,
-    violation: Vector,
+    left: tuple[float, float],
     seconds: float,
 ) -> Iteration:
-    """The row of the table for a state."""
-    internal = system.internal(state)
-    residual = system.unbalanced(state, internal)
-    gap = system.split(system.gap(state))
+    """The row of the table for a state. left: of forces over the largest, as ``imbalance``, and of laws over the largest
+    pressure, as ``broken``."""
     depth = [
-        float((-g / (pair.weight * pair.size))[pair.normal].max(initial=0.0))
-        for pair, g in zip(system.pairs, gap)
+        float((-gap / (pair.weight * pair.size))[pair.normal].max(initial=0.0))
+        for pair, gap in zip(system.pairs, system.split(system.gap(state)))
         if not pair.tied
     ]
     rubbing = any(pair.frictional for pair in system.pairs)
@@ -115,15 +113,26 @@ def report(
         iteration=count,
         active=points(system, state.closed),
         changed=changed,
-        residual=float(
-            np.abs(system.relative(residual, largest_force(system, state, internal, increment))).max(initial=0.0)
-        ),
-        contact_residual=_relative(violation, largest_pressure(state, increment)),
+        residual=left[0],
+        contact_residual=left[1],
         penetration=max(depth, default=0.0),
         seconds=seconds,
         sticking=points(system, state.closed & ~state.slipping, of_friction=True) if rubbing else None,
         slipping=points(system, state.slipping, of_friction=True) if rubbing else None,
     )
+
+
+def imbalance(system: Linearised, state: State, increment: Increment) -> float:
+    """What forces leave, over the largest one."""
+    internal = system.internal(state)
+    largest = largest_force(system, state, internal, increment)
+    return float(np.abs(system.relative(system.unbalanced(state, internal), largest)).max(initial=0.0))
+
+
+def broken(violation: Vector, state: State, increment: Increment) -> float:
+    """Largest violation over the largest pressure; 1 while there is no pressure."""
+    worst, largest = float(violation.max(initial=0.0)), largest_pressure(state, increment)
+    return worst / largest if largest > NOTHING else float(worst > 0.0)
 
 
 def points(system: Linearised, flags: NDArray[np.bool_], of_friction: bool = False) -> int:
@@ -145,12 +154,6 @@ def largest_force(system: Linearised, state: State, internal: Vector, increment:
         return max(system.about.reference, float(np.abs(push).max(initial=0.0)), increment.largest.force, NOTHING)
     largest = (float(np.abs(forces).max(initial=0.0)) for forces in (internal, system.load, push))
     return max(*largest, increment.largest.force, NOTHING)
-
-
-def _relative(violation: Vector, largest: float) -> float:
-    """Largest violation over the largest pressure; 1 while there is no pressure."""
-    worst = float(violation.max(initial=0.0))
-    return worst / largest if largest > NOTHING else float(worst > 0.0)
 
 
 def largest_pressure(state: State, increment: Increment) -> float:

@@ -21,7 +21,7 @@ from abut.nonlinear.settings import DEFAULT, Settings
 from abut.problem.balance import Balance
 from abut.problem.edge_trials import on_trial, refuses, with_refused
 from abut.problem.problem import ContactProblem
-from abut.problem.stabilising import drag_of, with_drag
+from abut.problem.stabilising import with_drag
 from abut.solution import Iteration
 from abut.solution.state import State
 
@@ -154,8 +154,7 @@ def stabilised(setting: Setting, before: State, time: float) -> Led:
     settings, asked = setting.settings, setting.settings.drag
     problem, setting = setting.problem, replace(setting, limit=min(2 * settings.steps.easy, setting.limit))
     size, most = scale(problem.again(before, before)), 0.0
-    begin = asked.slight if not drag_of(before).any() else asked.slight**2
-    strength = Strength(begin, settings, asked.change)
+    strength = Strength(asked.slight, settings, asked.change)
     here, parts, spent = before, list[Attempt](), tuple[Iteration, ...]()
     part, why = None, "bodies do not come to rest"
     for _ in range(settings.steps.solutions):

@@ -29,7 +29,7 @@ from abut.nonlinear.finite_laws import (
 from abut.nonlinear.forcing import forcing
 from abut.nonlinear.friction_laws import friction_laws
 from abut.nonlinear.holding import not_adrift, resisting, sticking
-from abut.nonlinear.iteration import Found, Increment, advance, largest_force, largest_pressure, part_of, points
+from abut.nonlinear.iteration import Found, Increment, advance, largest_force, largest_pressure, part_of, report
 from abut.nonlinear.line_search import shortened
 from abut.nonlinear.newton import End, Method, newton
 from abut.nonlinear.settings import NOTHING, Settings
@@ -345,22 +345,10 @@ def _shortened(step: Step, here: Trial, full: Trial) -> Trial:
 
 
 def _report(step: Step, here: Trial, begun: float) -> float:
-    now = clocks.perf_counter()
-    depth = [
-        float((-gap / (pair.weight * pair.size))[pair.normal].max(initial=0.0))
-        for pair, gap in zip(here.system.pairs, here.system.split(here.system.gap(here.state)))
-        if not pair.tied
-    ]
-    system, state = here.system, here.state
-    rubbing = any(pair.frictional for pair in system.pairs)
-    row = Iteration(
-        step=step.increment.number, iteration=len(step.done) + 1, active=points(system, state.closed),
-        changed=int(here.changed.sum()), residual=here.force, contact_residual=here.law,
-        penetration=max(depth, default=0.0), seconds=now - begun,
-        sticking=points(system, state.closed & ~state.slipping, of_friction=True) if rubbing else None,
-        slipping=points(system, state.slipping, of_friction=True) if rubbing else None,
-    )  # fmt: skip
+    now, left = clocks.perf_counter(), (here.force, here.law)
+    changed = int(here.changed.sum())
+    row = report(here.system, here.state, step.increment, len(step.done) + 1, changed, left, now - begun)
     step.done.append(row)
-    step.reached = state
+    step.reached = here.state
     step.observe(row)
     return now

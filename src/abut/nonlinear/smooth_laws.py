@@ -21,7 +21,7 @@ from abut.nonlinear.iteration import (
     Increment,
     active_laws,
     advance,
-    largest_force,
+    imbalance,
     largest_pressure,
     next_active,
     part_of,
@@ -126,7 +126,7 @@ class SmoothLaws(Method[Trial]):
         laws = self.smooth.laws(self.softness)(solver.system, state)
         violation = self.smooth.violation(laws)
         law_error = float(violation.max(initial=0.0))
-        error = max(law_error, _unbalanced(solver.system, state, increment))
+        error = max(law_error, imbalance(solver.system, state, increment))
         tried = replace(here, laws=laws, violation=violation, law_error=law_error, error=error)
         try:
             full = advance(solver, state, laws, forcing(error, self._before, increment.settings))
@@ -145,9 +145,10 @@ class SmoothLaws(Method[Trial]):
         wanted = _wanted(system, following, increment, self._tied)
         changed = (status := np.where(self._sharp | self._rubs, wanted, closed)) != here.state.status
         state, seconds = following.with_status(status), time.perf_counter() - self._clock
-        row = report(system, state, increment, len(self._done) + 1, int(changed.sum()), np.zeros(1), seconds)
-        self._done.append(replace(row, contact_residual=there.law_error))
-        self._observe(self._done[-1])
+        left = imbalance(system, state, increment), there.law_error
+        row = report(system, state, increment, len(self._done) + 1, int(changed.sum()), left, seconds)
+        self._done.append(row)
+        self._observe(row)
         unsettled = bool(changed[self._sharp].any())
         return replace(there, state=state, unbalanced=row.residual, unsettled=unsettled, shrinks=shrinks)
 
@@ -194,12 +195,6 @@ def _wanted(
     if any(pair.frictional for pair in system.pairs):
         return next_status(system, state, increment)
     return np.where(next_active(system, state, increment, tied)[0], CLOSED, OPEN)
-
-
-def _unbalanced(system: Linearised, state: State, increment: Increment) -> float:
-    internal = system.internal(state)
-    residual = system.unbalanced(state, internal)
-    return float(np.abs(residual).max(initial=0.0) / largest_force(system, state, internal, increment))
 
 
 def _smooth_laws(system: Linearised, state: State, reference: float, softness: float) -> list[LawRows]:
