@@ -22,7 +22,7 @@ def circling(errors: Sequence[float], settings: Settings) -> bool:
     A line search goes on from there: without it ``examples/pipe-clip`` takes 105 iterations, with it 99."""
     for period in range(2, settings.newton.patience + 1):
         before, last = np.array(errors[-2 * period : -period]), np.array(errors[-period:])
-        if len(before) == period and (np.abs(last - before) <= settings.interior.met * before).all():
+        if len(before) == period and (np.abs(last - before) <= settings.newton.same * before).all():
             return True
     return False
 
