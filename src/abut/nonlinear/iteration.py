@@ -125,7 +125,7 @@ def report(
 def imbalance(system: Linearised, state: State, increment: Increment) -> float:
     """What forces leave, over the largest one."""
     internal = system.internal(state)
-    largest = largest_force(system, state, internal, increment)
+    largest = largest_force(system, state, increment, internal)
     return float(np.abs(system.relative(system.unbalanced(state, internal), largest)).max(initial=0.0))
 
 
@@ -145,13 +145,14 @@ def points(system: Linearised, flags: NDArray[np.bool_], of_friction: bool = Fal
     )
 
 
-def largest_force(system: Linearised, state: State, internal: Vector, increment: Increment) -> float:
-    """Largest nodal force of stresses (``internal``), of loads and of single multipliers, now or in a step before. Where
-    displacements have been condensed, those that are left see nothing of contact forces that balance each other on a body,
-    as round a press fit."""
+def largest_force(system: Linearised, state: State, increment: Increment, internal: Vector | None = None) -> float:
+    """Largest nodal force of stresses (``internal``, where it is known), of loads and of single multipliers, now or in a step
+    before. Where displacements have been condensed, those that are left see nothing of contact forces that balance each
+    other on a body, as round a press fit."""
     push = system.weight * state.multipliers
     if system.about is not None:
         return max(system.about.reference, float(np.abs(push).max(initial=0.0)), increment.largest.force, NOTHING)
+    internal = system.internal(state) if internal is None else internal
     largest = (float(np.abs(forces).max(initial=0.0)) for forces in (internal, system.load, push))
     return max(*largest, increment.largest.force, NOTHING)
 
@@ -163,5 +164,4 @@ def largest_pressure(state: State, increment: Increment) -> float:
 
 def largest_so_far(system: Linearised, state: State, increment: Increment) -> Largest:
     """Of the steps up to the one that ended with ``state``."""
-    force = largest_force(system, state, system.internal(state), increment)
-    return Largest(force, largest_pressure(state, increment))
+    return Largest(largest_force(system, state, increment), largest_pressure(state, increment))

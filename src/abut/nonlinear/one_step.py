@@ -14,9 +14,9 @@ from abut.linear.solver import LinearSolver
 from abut.nonlinear.attempt import UNSTEADY, Attempt
 from abut.nonlinear.drag import Drag, scale
 from abut.nonlinear.hourglass import folds_at_once
-from abut.nonlinear.iteration import Found, Increment
+from abut.nonlinear.iteration import Found, Increment, largest_so_far
 from abut.nonlinear.pace import Pace
-from abut.nonlinear.semismooth import Step, largest_of, solve_finite
+from abut.nonlinear.semismooth import Step, solve_finite
 from abut.nonlinear.settings import DEFAULT, Settings
 from abut.problem.balance import Balance
 from abut.problem.edge_trials import on_trial, refuses, with_refused
@@ -90,7 +90,7 @@ def _ended(step: Step, found: Found, time: float) -> Attempt:
         balance = Balance.of(found.system, state)
     if found.converged:
         assert found.system is not None
-        state = replace(state, largest=largest_of(found.system, state, step.increment))
+        state = replace(state, largest=largest_so_far(found.system, state, step.increment))
         state = step.problem.accepted(step.before, step.frame, state, found.system)
     return Attempt(
         step.increment.number, state, found.converged, found.iterations, found.cycling, none, time, step.failed,

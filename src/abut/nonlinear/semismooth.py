@@ -29,7 +29,7 @@ from abut.nonlinear.finite_laws import (
 from abut.nonlinear.forcing import forcing
 from abut.nonlinear.friction_laws import friction_laws
 from abut.nonlinear.holding import not_adrift, resisting, sticking
-from abut.nonlinear.iteration import Found, Increment, advance, largest_force, largest_pressure, part_of, report
+from abut.nonlinear.iteration import Found, Increment, advance, largest_pressure, largest_so_far, part_of, report
 from abut.nonlinear.line_search import shortened
 from abut.nonlinear.newton import End, Method, newton
 from abut.nonlinear.settings import NOTHING, Settings
@@ -39,7 +39,7 @@ from abut.problem.laws import LawRows
 from abut.problem.linearised import Linearised
 from abut.problem.problem import ContactProblem
 from abut.solution import Iteration
-from abut.solution.state import CLOSED, Largest, State
+from abut.solution.state import CLOSED, State
 
 Vector = NDArray[np.float64]
 
@@ -306,7 +306,7 @@ def _judged(step: Step, own: Linearised, state: State, guessed: bool = False) ->
     laws = laws_of(system, state, step.asked)
     state = state.with_status(status_of(system, state, laws, step.asked))
     changed = state.status != before
-    so_far = largest_of(system, state, step.increment)
+    so_far = largest_so_far(system, state, step.increment)
     modulus = max((pair.stiffness * pair.size for pair in system.pairs), default=1.0)
     forces, pressures = max(so_far.force, NOTHING), max(so_far.pressure, step.settings.newton.faint * modulus)
     left = system.relative(system.unbalanced(state), forces)
@@ -326,12 +326,6 @@ def _tried(step: Step, here: Trial, state: State) -> Trial:
         if step.drag is None:
             raise
         return replace(here, state=state, size=np.inf)
-
-
-def largest_of(system: Linearised, state: State, increment: Increment) -> Largest:
-    """Force and pressure, now or in a step before."""
-    pressure = np.abs(state.multipliers).max(initial=increment.largest.pressure)
-    return Largest(largest_force(system, state, system.load, increment), float(pressure))
 
 
 def _shortened(step: Step, here: Trial, full: Trial) -> Trial:
