@@ -146,8 +146,8 @@ def points(system: Linearised, flags: NDArray[np.bool_], of_friction: bool = Fal
 
 
 def largest_force(system: Linearised, state: State, increment: Increment, internal: Vector | None = None) -> float:
-    """Largest nodal force of stresses (``internal``, where it is known), of loads and of single multipliers, now or in a step
-    before. Where displacements have been condensed, those that are left see nothing of contact forces that balance each
+    """Largest nodal force of stresses (``internal``, where it is known), of loads and of single multipliers, now or in a
+    step before. Where displacements have been condensed, those that are left see nothing of contact forces that balance each
     other on a body, as round a press fit."""
     push = system.weight * state.multipliers
     if system.about is not None:
