@@ -78,16 +78,16 @@ class Smooth:
             at, asked, epsilon = pair.points, pair.contact.law, pair.contact.epsilon
             if pair.frictional and pair.smooth:
                 bound = pair.friction(system.factors)
-                law = SmoothCoulomb(pair.stiffness, bound, float(np.sqrt(epsilon)), self.reference)
-                laws.append(at_multipliers(pair, law, g, p, closed))
+                softened = SmoothCoulomb(pair.stiffness, bound, float(np.sqrt(epsilon)), self.reference)
+                laws.append(at_multipliers(pair, softened, g, p, closed))
             elif pair.frictional:
                 laws.append(at_multipliers(pair, coulomb(pair, system), g, p, closed, slips))
             elif at is not None:
                 gap = at.gap + at.operator @ state.unknowns + at.prescribed @ system.factors
                 laws.append(in_the_mean(at, ConstraintFunction(at.stiffness, epsilon, self.reference), gap, p))
             elif pair.tied or isinstance(asked, str):
-                law = Tied() if pair.tied else Complementarity(pair.stiffness)
-                laws.append(at_multipliers(pair, law, g, p, closed))
+                plain = Tied() if pair.tied else Complementarity(pair.stiffness)
+                laws.append(at_multipliers(pair, plain, g, p, closed))
             else:
                 laws.append(at_multipliers(pair, asked, g, p, closed))
         return laws
