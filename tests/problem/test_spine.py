@@ -250,13 +250,13 @@ def test_newton_converges_quadratically(monkeypatch: pytest.MonkeyPatch) -> None
     """Of a nonlinear material in contact: the last three errors of force balance in the first step fall with an order of
     two, to rounding."""
     errors: list[float] = []
-    true = load_step._unbalanced
+    true = load_step.imbalance
 
     def told(*args: Any) -> float:
         errors.append(true(*args))
         return errors[-1]
 
-    monkeypatch.setattr(load_step, "_unbalanced", told)
+    monkeypatch.setattr(load_step, "imbalance", told)
     solution = stiffening.pressed(stiffening.Stiffening(5.0, 1.0, 200.0), depth=0.05)
     assert solution.converged
     first = errors[: next(i for i, error in enumerate(errors) if error < DEFAULT.newton.balanced) + 1]

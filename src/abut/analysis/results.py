@@ -56,7 +56,6 @@ from abut.problem.scales import scales
 from abut.problem.sections import preload_forces
 from abut.problem.sector_sides import left_out
 from abut.problem.springs import Springs
-from abut.problem.stabilising import drag_of, is_dragged
 from abut.problem.step_error import landed_in
 from abut.problem.terms import Motion
 from abut.solution import ContactResult, Energy, Flips, Flow, PreloadResult, RigidResult, Step
@@ -255,7 +254,7 @@ def _finite_energy(
         end.displacement, end.internal, end.loads + end.held, end.reaction - end.held, pressed,
         end.internal - end.loads - end.reaction - pressed, balance.energy, state.unknowns,
         problem.constraints.near(state.unknowns, weights(histories, state.time)).free, left,
-        drag_of(state) if is_dragged(state) else None, end.flow.work if end.flow else 0.0, state.time,
+        state.history.drag, end.flow.work if end.flow else 0.0, state.time,
     )  # fmt: skip
     return now, finite_energy(problem, acted, now, balance.diagonal, contacts, _largest_size(steps))
 

@@ -10,7 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.linear.solver import Prepared
-from abut.nonlinear.iteration import Increment, active_laws, advance, largest_pressure, next_active, report
+from abut.nonlinear.iteration import (
+    Increment,
+    active_laws,
+    advance,
+    broken,
+    imbalance,
+    largest_pressure,
+    next_active,
+    report,
+)
 from abut.nonlinear.settings import Settings
 from abut.solution import Iteration
 from abut.solution.state import State
@@ -53,7 +62,8 @@ def solve_set(
         state = advance(solver, state, active_laws(system, state), accuracy)
         wanted, violation = next_active(system, state, increment, tied)
         changed = int((wanted != active).sum())
-        row = report(system, state, increment, count, changed, violation, time.perf_counter() - clock)
+        left = imbalance(system, state, increment), broken(violation, state, increment)
+        row = report(system, state, increment, count, changed, left, time.perf_counter() - clock)
         solved = Solved(state, wanted, violation, closure(solver, state, increment), row)
         if solved.error <= asked.told:
             break

@@ -97,16 +97,14 @@ def report(
     increment: Increment,
     count: int,
     changed: int,
-    violation: Vector,
+    left: tuple[float, float],
     seconds: float,
 ) -> Iteration:
-    """The row of the table for a state."""
-    internal = system.internal(state)
-    residual = system.unbalanced(state, internal)
-    gap = system.split(system.gap(state))
+    """The row of the table for a state. left: of forces over the largest, as ``imbalance``, and of laws over the largest
+    pressure, as ``broken``."""
     depth = [
-        float((-g / (pair.weight * pair.size))[pair.normal].max(initial=0.0))
-        for pair, g in zip(system.pairs, gap)
+        float((-gap / (pair.weight * pair.size))[pair.normal].max(initial=0.0))
+        for pair, gap in zip(system.pairs, system.split(system.gap(state)))
         if not pair.tied
     ]
     rubbing = any(pair.frictional for pair in system.pairs)
@@ -115,15 +113,26 @@ def report(
         iteration=count,
         active=points(system, state.closed),
         changed=changed,
-        residual=float(
-            np.abs(system.relative(residual, largest_force(system, state, internal, increment))).max(initial=0.0)
-        ),
-        contact_residual=_relative(violation, largest_pressure(state, increment)),
+        residual=left[0],
+        contact_residual=left[1],
         penetration=max(depth, default=0.0),
         seconds=seconds,
         sticking=points(system, state.closed & ~state.slipping, of_friction=True) if rubbing else None,
         slipping=points(system, state.slipping, of_friction=True) if rubbing else None,
     )
+
+
+def imbalance(system: Linearised, state: State, increment: Increment) -> float:
+    """What forces leave, over the largest one."""
+    internal = system.internal(state)
+    largest = largest_force(system, state, increment, internal)
+    return float(np.abs(system.relative(system.unbalanced(state, internal), largest)).max(initial=0.0))
+
+
+def broken(violation: Vector, state: State, increment: Increment) -> float:
+    """Largest violation over the largest pressure; 1 while there is no pressure."""
+    worst, largest = float(violation.max(initial=0.0)), largest_pressure(state, increment)
+    return worst / largest if largest > NOTHING else float(worst > 0.0)
 
 
 def points(system: Linearised, flags: NDArray[np.bool_], of_friction: bool = False) -> int:
@@ -136,21 +145,16 @@ def points(system: Linearised, flags: NDArray[np.bool_], of_friction: bool = Fal
     )
 
 
-def largest_force(system: Linearised, state: State, internal: Vector, increment: Increment) -> float:
-    """Largest nodal force of stresses (``internal``), of loads, of single multipliers and, where materials are not linear,
-    of supports, now or in a step before. Where displacements have been condensed, those that are left see nothing of contact
-    forces that balance each other on a body, as round a press fit."""
+def largest_force(system: Linearised, state: State, increment: Increment, internal: Vector | None = None) -> float:
+    """Largest nodal force of stresses (``internal``, where it is known), of loads, of single multipliers and, where
+    materials are not linear, of supports, now or in a step before. Where displacements have been condensed, those that are
+    left see nothing of contact forces that balance each other on a body, as round a press fit."""
     push = system.weight * state.multipliers
     if system.about is not None:
         return max(system.about.reference, float(np.abs(push).max(initial=0.0)), increment.largest.force, NOTHING)
+    internal = system.internal(state) if internal is None else internal
     largest = (float(np.abs(forces).max(initial=0.0)) for forces in (internal, system.load, push))
     return max(*largest, system.largest, increment.largest.force, NOTHING)
-
-
-def _relative(violation: Vector, largest: float) -> float:
-    """Largest violation over the largest pressure; 1 while there is no pressure."""
-    worst = float(violation.max(initial=0.0))
-    return worst / largest if largest > NOTHING else float(worst > 0.0)
 
 
 def largest_pressure(state: State, increment: Increment) -> float:
@@ -160,5 +164,4 @@ def largest_pressure(state: State, increment: Increment) -> float:
 
 def largest_so_far(system: Linearised, state: State, increment: Increment) -> Largest:
     """Of the steps up to the one that ended with ``state``."""
-    force = largest_force(system, state, system.internal(state), increment)
-    return Largest(force, largest_pressure(state, increment))
+    return Largest(largest_force(system, state, increment), largest_pressure(state, increment))

@@ -13,11 +13,11 @@ from abut.nonlinear.hanging import hanging
 from abut.nonlinear.holding import lifted, overcome
 from abut.nonlinear.hourglass import hourglassing
 from abut.nonlinear.march import Begin, Control
-from abut.nonlinear.one_step import Setting, led_on, stabilised
+from abut.nonlinear.one_step import Setting, led_on
 from abut.nonlinear.pace import Pace
 from abut.nonlinear.unsettled import gives_way
 from abut.problem.problem import ContactProblem
-from abut.problem.stabilising import drag_of, is_dragged
+from abut.problem.stabilising import is_dragged
 from abut.solution.state import State
 
 
@@ -45,10 +45,9 @@ class LargeSteps:
             self._control.observe,
             self._control.settings,
         )
-        attempts = _attempts(
-            setting, before, self._guess(begin, pace), time, careful=begin.cuts >= self._control.settings.steps.careful
-        )
-        return _led(setting, before, pace, attempts[-1]) if not attempts[-1].converged and pace.last else attempts
+        careful = begin.cuts >= self._control.settings.steps.careful
+        attempt = setting.attempted(before, self._guess(begin, pace), time, careful=careful)
+        return [attempt] if attempt.converged or not pace.last else _led(setting, before, pace, attempt)
 
     def replace(self, solver: LinearSolver) -> None:
         """As in ``Stepper``: for this step."""
@@ -70,15 +69,6 @@ class LargeSteps:
         if before.time <= earlier.time:  # a drag has led on without time
             return None
         return extrapolated(problem, earlier, before, pace.end or before.time)
-
-
-def _attempts(setting: Setting, before: State, guess: State | None, time: float, careful: bool) -> Sequence[Attempt]:
-    """One at the step to ``time``. After a step that ended under a drag, where that fails, its parts under a drag as well:
-    what a body lies on may hardly resist a motion, and loads bring it back all the same, as a disc in a bowl."""
-    plain = setting.attempted(before, guess, time, careful=careful)
-    if plain.converged or not drag_of(before).any():
-        return [plain]
-    return stabilised(setting, before, time).attempts
 
 
 def _led(setting: Setting, before: State, pace: Pace, failed: Attempt) -> Sequence[Attempt]:

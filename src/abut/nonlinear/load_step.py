@@ -18,7 +18,7 @@ from abut.linear.solver import LinearSolver, Prepared
 from abut.nonlinear.attempt import Attempt as Attempt
 from abut.nonlinear.exact import Aim
 from abut.nonlinear.forcing import forcing
-from abut.nonlinear.iteration import Found, Increment, largest_force, largest_so_far
+from abut.nonlinear.iteration import Found, Increment, imbalance, largest_so_far
 from abut.nonlinear.newton import End, Method, newton
 from abut.problem.balance import Balance
 from abut.problem.frame import Frame
@@ -96,7 +96,7 @@ class Bodies(Method[Trial]):
             return Trial(found, prepared, system, 0.0)
         system = task.problem.linearise(task.before, task.frame, found.state)
         law = found.iterations[-1].contact_residual if eased is not prepared else 0.0
-        return Trial(found, prepared, system, max(_unbalanced(system, found.state, task.increment), law))
+        return Trial(found, prepared, system, max(imbalance(system, found.state, task.increment), law))
 
     def advanced(self, here: Trial) -> Trial:
         """As in ``Method``."""
@@ -207,9 +207,3 @@ def _ended(task: Task, time: float, found: Found, prepared: Prepared, inside: ND
         task.increment.number, state, found.converged, found.iterations, found.cycling, inside, time, found.reason,
         between=found.between, balance=None if found.system is None else Balance.of(whole, state),
     )  # fmt: skip
-
-
-def _unbalanced(system: Linearised, state: State, increment: Increment) -> float:
-    internal = system.internal(state)
-    largest = largest_force(system, state, internal, increment)
-    return float(np.abs(system.relative(system.unbalanced(state, internal), largest)).max(initial=0.0))

@@ -12,7 +12,7 @@ method                        linearised anew                      contact statu
 ``search.InteriorContact``         products of pressures and gaps       where pressures win             inside their bounds
 ``friction_newton.Sliding``   the status with friction             asked for, foreseen             ``friction`` takes over
 ``friction.InteriorSliding``  products in second-order cones       where tractions win             inside their cones
-``smooth_laws.SmoothLaws``    laws that are functions of gaps      asked for of all other pairs    line search, softness
+``smooth_laws.SmoothLaws``    laws that are functions of gaps      asked for of all other pairs    line search
 ============================  ===================================  ==============================  =====================
 """
 

@@ -14,14 +14,14 @@ from abut.linear.solver import LinearSolver
 from abut.nonlinear.attempt import UNSTEADY, Attempt
 from abut.nonlinear.drag import Drag, scale
 from abut.nonlinear.hourglass import folds_at_once
-from abut.nonlinear.iteration import Found, Increment
+from abut.nonlinear.iteration import Found, Increment, largest_so_far
 from abut.nonlinear.pace import Pace
-from abut.nonlinear.semismooth import Step, largest_of, solve_finite
+from abut.nonlinear.semismooth import Step, solve_finite
 from abut.nonlinear.settings import DEFAULT, Settings
 from abut.problem.balance import Balance
 from abut.problem.edge_trials import on_trial, refuses, with_refused
 from abut.problem.problem import ContactProblem
-from abut.problem.stabilising import drag_of, with_drag
+from abut.problem.stabilising import with_drag
 from abut.solution import Iteration
 from abut.solution.state import State
 
@@ -90,7 +90,7 @@ def _ended(step: Step, found: Found, time: float) -> Attempt:
         balance = Balance.of(found.system, state)
     if found.converged:
         assert found.system is not None
-        state = replace(state, largest=largest_of(found.system, state, step.increment))
+        state = replace(state, largest=largest_so_far(found.system, state, step.increment))
         state = step.problem.accepted(step.before, step.frame, state, found.system)
     return Attempt(
         step.increment.number, state, found.converged, found.iterations, found.cycling, none, time, step.failed,
@@ -154,8 +154,7 @@ def stabilised(setting: Setting, before: State, time: float) -> Led:
     settings, asked = setting.settings, setting.settings.drag
     problem, setting = setting.problem, replace(setting, limit=min(2 * settings.steps.easy, setting.limit))
     size, most = scale(problem.again(before, before)), 0.0
-    begin = asked.slight if not drag_of(before).any() else asked.slight**2
-    strength = Strength(begin, settings, asked.change)
+    strength = Strength(asked.slight, settings, asked.change)
     here, parts, spent = before, list[Attempt](), tuple[Iteration, ...]()
     part, why = None, "bodies do not come to rest"
     for _ in range(settings.steps.solutions):

@@ -13,7 +13,7 @@ from abut.errors import SingularModelError
 from abut.linear.solver import Prepared
 from abut.nonlinear.exact import Aim, Solved, finer, settled, solve_set
 from abut.nonlinear.interior_point import Interior, Manner, Programme, begin, iterate, near
-from abut.nonlinear.iteration import Found, Increment, active_laws, largest_pressure, report
+from abut.nonlinear.iteration import Found, Increment, active_laws, broken, imbalance, largest_pressure, report
 from abut.nonlinear.newton import End, Method, newton
 from abut.nonlinear.smooth_laws import finish_smooth
 from abut.solution import Iteration
@@ -196,4 +196,5 @@ def _row(
     system = solver.system
     gap = system.gap(state) / system.scale
     violation = np.abs(np.where(tied, gap, np.minimum(gap, state.multipliers)))
-    return report(system, state, increment, count, changed, violation, time.perf_counter() - clock)
+    left = imbalance(system, state, increment), broken(violation, state, increment)
+    return report(system, state, increment, count, changed, left, time.perf_counter() - clock)

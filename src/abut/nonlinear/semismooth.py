@@ -29,7 +29,7 @@ from abut.nonlinear.finite_laws import (
 from abut.nonlinear.forcing import forcing
 from abut.nonlinear.friction_laws import friction_laws
 from abut.nonlinear.holding import not_adrift, resisting, sticking
-from abut.nonlinear.iteration import Found, Increment, advance, largest_force, largest_pressure, part_of, points
+from abut.nonlinear.iteration import Found, Increment, advance, largest_pressure, largest_so_far, part_of, report
 from abut.nonlinear.line_search import shortened
 from abut.nonlinear.newton import End, Method, newton
 from abut.nonlinear.pivots import pivoted
@@ -40,7 +40,7 @@ from abut.problem.laws import LawRows
 from abut.problem.linearised import Linearised
 from abut.problem.problem import ContactProblem
 from abut.solution import Iteration
-from abut.solution.state import CLOSED, Largest, State
+from abut.solution.state import CLOSED, State
 
 Vector = NDArray[np.float64]
 
@@ -304,7 +304,7 @@ def _judged(step: Step, own: Linearised, state: State, guessed: bool = False) ->
     laws = laws_of(system, state, step.asked)
     state = state.with_status(status_of(system, state, laws, step.asked))
     changed = state.status != before
-    so_far = largest_of(system, state, step.increment)
+    so_far = largest_so_far(system, state, step.increment)
     modulus = max((pair.stiffness * pair.size for pair in system.pairs), default=1.0)
     forces, pressures = max(so_far.force, NOTHING), max(so_far.pressure, step.settings.newton.faint * modulus)
     left = system.relative(system.unbalanced(state), forces)
@@ -326,12 +326,6 @@ def _tried(step: Step, here: Trial, state: State) -> Trial:
         return replace(here, state=state, size=np.inf)
 
 
-def largest_of(system: Linearised, state: State, increment: Increment) -> Largest:
-    """Force and pressure, now or in a step before."""
-    pressure = np.abs(state.multipliers).max(initial=increment.largest.pressure)
-    return Largest(largest_force(system, state, system.load, increment), float(pressure))
-
-
 def _shortened(step: Step, here: Trial, full: Trial) -> Trial:
     """The whole step, or the part of it that a line search finds to be better."""
 
@@ -343,22 +337,10 @@ def _shortened(step: Step, here: Trial, full: Trial) -> Trial:
 
 
 def _report(step: Step, here: Trial, begun: float) -> float:
-    now = clocks.perf_counter()
-    depth = [
-        float((-gap / (pair.weight * pair.size))[pair.normal].max(initial=0.0))
-        for pair, gap in zip(here.system.pairs, here.system.split(here.system.gap(here.state)))
-        if not pair.tied
-    ]
-    system, state = here.system, here.state
-    rubbing = any(pair.frictional for pair in system.pairs)
-    row = Iteration(
-        step=step.increment.number, iteration=len(step.done) + 1, active=points(system, state.closed),
-        changed=int(here.changed.sum()), residual=here.force, contact_residual=here.law,
-        penetration=max(depth, default=0.0), seconds=now - begun,
-        sticking=points(system, state.closed & ~state.slipping, of_friction=True) if rubbing else None,
-        slipping=points(system, state.slipping, of_friction=True) if rubbing else None,
-    )  # fmt: skip
+    now, left = clocks.perf_counter(), (here.force, here.law)
+    changed = int(here.changed.sum())
+    row = report(here.system, here.state, step.increment, len(step.done) + 1, changed, left, now - begun)
     step.done.append(row)
-    step.reached = state
+    step.reached = here.state
     step.observe(row)
     return now

@@ -42,6 +42,10 @@ class NewtonSettings:
     bent: float = _of(
         0.2, "facets", "gap up to which a point that presses stays closed for an iteration", "test_opening.py",
     )  # fmt: skip
+    same: float = _of(
+        0.01, "of an error", "by which it may differ from that of an iteration to which others come back",
+        "test_unsettled.py",
+    )  # fmt: skip
     again: int = _of(
         2, "closings in a step", "after which a point may take the place of another", "test_verify.py",
     )  # fmt: skip
@@ -127,7 +131,7 @@ class StatusSettings:
 
 @dataclass(frozen=True)
 class InteriorSettings:
-    """Interior points, and laws that begin soft."""
+    """Interior points."""
 
     boundary: float = _of(0.995, "of the way to it", "that a step goes", "test_search.py")
     central: float = _of(1e-3, "of the mean product", "that the smallest keeps", "test_search.py")
@@ -137,10 +141,6 @@ class InteriorSettings:
         "test_search.py",
     )  # fmt: skip
     steepest: float = _of(100.0, "coefficient of friction", "of surfaces that never slip", "test_friction.py")
-    fade: float = _of(0.3, "of the last one", "softness once laws are met", "test_smooth_friction_runs.py")
-    met: float = _of(
-        0.01, "of the largest pressure", "violation of a softened law that is met", "test_smooth_friction_runs.py"
-    )
 
 
 @dataclass(frozen=True)

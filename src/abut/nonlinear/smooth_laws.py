@@ -5,12 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.contact.laws import TENSION_START, Complementarity, ConstraintFunction, Tied
+from abut.contact.laws import Complementarity, ConstraintFunction, Tied
 from abut.contact.smooth_friction import SmoothCoulomb
 from abut.errors import SingularModelError
 from abut.linear.solver import Prepared
@@ -21,7 +20,7 @@ from abut.nonlinear.iteration import (
     Increment,
     active_laws,
     advance,
-    largest_force,
+    imbalance,
     largest_pressure,
     next_active,
     part_of,
@@ -31,11 +30,8 @@ from abut.nonlinear.line_search import shortened
 from abut.nonlinear.newton import End, Method, newton
 from abut.problem.laws import LawRows, at_multipliers, in_the_mean
 from abut.problem.linearised import Linearised
-from abut.problem.problem import Laws
 from abut.solution import Iteration
 from abut.solution.state import CLOSED, OPEN, State
-
-SOFTEST, HARDEST = 1.0, 0.0  # share of the largest pressure over which the function is smoothed, beside its own epsilon
 
 
 def finish_smooth(
@@ -59,8 +55,11 @@ def finish_smooth(
         # The function is smoothed over a share of the largest pressure: without one it is the complementarity law.
         return exact
     smooth = Smooth(solver, increment, reference)
-    outcome = _with(smooth, state, limit, done, observe, HARDEST)
-    return outcome if outcome.converged else _with(smooth, state, limit, done, observe, SOFTEST)
+    there, end = newton(SmoothLaws(smooth, done, observe), Trial(state), limit)
+    if end is End.SOLVED:
+        return Found(there.state, tuple(done), True, none, smooth.laws)
+    broken = there.violation > 0.1 * there.violation.max(initial=0.0)
+    return Found(there.state, tuple(done), False, broken, smooth.laws)
 
 
 @dataclass(frozen=True)
@@ -71,9 +70,27 @@ class Smooth:
     increment: Increment
     reference: float
 
-    def laws(self, softness: float) -> Laws:
-        """Of all pairs, where epsilon is replaced by the square of ``softness`` (1: left as it is) if that is larger."""
-        return partial(_smooth_laws, reference=self.reference, softness=softness)
+    def laws(self, system: Linearised, state: State) -> list[LawRows]:
+        """Of all pairs."""
+        laws = []
+        parts = (system.gap(state), state.multipliers, state.closed, state.slipping)
+        for pair, g, p, closed, slips in zip(system.pairs, *map(system.split, parts)):
+            at, asked, epsilon = pair.points, pair.contact.law, pair.contact.epsilon
+            if pair.frictional and pair.smooth:
+                bound = pair.friction(system.factors)
+                softened = SmoothCoulomb(pair.stiffness, bound, float(np.sqrt(epsilon)), self.reference)
+                laws.append(at_multipliers(pair, softened, g, p, closed))
+            elif pair.frictional:
+                laws.append(at_multipliers(pair, coulomb(pair, system), g, p, closed, slips))
+            elif at is not None:
+                gap = at.gap + at.operator @ state.unknowns + at.prescribed @ system.factors
+                laws.append(in_the_mean(at, ConstraintFunction(at.stiffness, epsilon, self.reference), gap, p))
+            elif pair.tied or isinstance(asked, str):
+                plain = Tied() if pair.tied else Complementarity(pair.stiffness)
+                laws.append(at_multipliers(pair, plain, g, p, closed))
+            else:
+                laws.append(at_multipliers(pair, asked, g, p, closed))
+        return laws
 
     def violation(self, laws: Sequence[LawRows]) -> NDArray[np.float64]:
         """Of each multiplier, (n,), over the largest pressure."""
@@ -103,13 +120,10 @@ class Trial:
 
 
 class SmoothLaws(Method[Trial]):
-    """Laws that begin as soft as told and harden as they are met, with a line search; gives up where that does. ``done``
-    grows."""
+    """Newton's method on the laws with a line search; gives up where that does. ``done`` grows."""
 
-    def __init__(
-        self, smooth: Smooth, done: list[Iteration], observe: Callable[[Iteration], None], softness: float
-    ) -> None:
-        self.smooth, self.softness = smooth, softness
+    def __init__(self, smooth: Smooth, done: list[Iteration], observe: Callable[[Iteration], None]) -> None:
+        self.smooth = smooth
         self._done, self._observe = done, observe
         self._tries, self._before, self._clock = 0, np.inf, 0.0
         self._tolerance = max(smooth.increment.settings.newton.balanced, smooth.solver.accurate)
@@ -123,10 +137,10 @@ class SmoothLaws(Method[Trial]):
         """As in ``Method``."""
         self._clock = time.perf_counter()
         solver, increment, state = self.smooth.solver, self.smooth.increment, here.state
-        laws = self.smooth.laws(self.softness)(solver.system, state)
+        laws = self.smooth.laws(solver.system, state)
         violation = self.smooth.violation(laws)
         law_error = float(violation.max(initial=0.0))
-        error = max(law_error, _unbalanced(solver.system, state, increment))
+        error = max(law_error, imbalance(solver.system, state, increment))
         tried = replace(here, laws=laws, violation=violation, law_error=law_error, error=error)
         try:
             full = advance(solver, state, laws, forcing(error, self._before, increment.settings))
@@ -139,52 +153,31 @@ class SmoothLaws(Method[Trial]):
         if there.singular:
             return there
         smooth, system, increment = self.smooth, self.smooth.solver.system, self.smooth.increment
-        following, shrinks = _line_search(smooth, here.state, there.state, smooth.laws(self.softness))
+        following, shrinks = _line_search(smooth, here.state, there.state)
         self._before = there.error
         closed = np.where(system.join([law.closed for law in there.laws]).astype(bool), CLOSED, OPEN)
         wanted = _wanted(system, following, increment, self._tied)
         changed = (status := np.where(self._sharp | self._rubs, wanted, closed)) != here.state.status
         state, seconds = following.with_status(status), time.perf_counter() - self._clock
-        row = report(system, state, increment, len(self._done) + 1, int(changed.sum()), np.zeros(1), seconds)
-        self._done.append(replace(row, contact_residual=there.law_error))
-        self._observe(self._done[-1])
+        left = imbalance(system, state, increment), there.law_error
+        row = report(system, state, increment, len(self._done) + 1, int(changed.sum()), left, seconds)
+        self._done.append(row)
+        self._observe(row)
         unsettled = bool(changed[self._sharp].any())
         return replace(there, state=state, unbalanced=row.residual, unsettled=unsettled, shrinks=shrinks)
 
     def ended(self, there: Trial) -> End | None:
         """As in ``Method``."""
         if there.singular:  # a body that nothing presses on, and rounding, which is all that is left, would move it
-            met = self.softness == HARDEST and there.error < self._tolerance and not there.unsettled
+            met = there.error < self._tolerance and not there.unsettled
             return End.SOLVED if met else End.STALLED
-        settings = self.smooth.increment.settings
-        if self.softness > HARDEST and there.law_error < settings.interior.met:
-            fades = self.softness > settings.accuracy.fine
-            self.softness, self._before = self.softness * settings.interior.fade if fades else HARDEST, np.inf
-        elif there.law_error < self._tolerance and there.unbalanced < self._tolerance and not there.unsettled:
+        if there.law_error < self._tolerance and there.unbalanced < self._tolerance and not there.unsettled:
             return End.SOLVED
-        elif not there.shrinks:
+        if not there.shrinks:
             self._tries += 1
-            if self._tries >= settings.newton.halvings:
+            if self._tries >= self.smooth.increment.settings.newton.halvings:
                 return End.STALLED
         return None
-
-
-def _with(
-    smooth: Smooth,
-    state: State,
-    limit: int,
-    done: list[Iteration],
-    observe: Callable[[Iteration], None],
-    softness: float,
-) -> Found:
-    """Newton's method on laws that begin so soft."""
-    method = SmoothLaws(smooth, done, observe, softness)
-    there, end = newton(method, Trial(state), limit)
-    if end is End.SOLVED:
-        none = np.zeros(len(state.status), dtype=bool)
-        return Found(there.state, tuple(done), True, none, smooth.laws(method.softness))
-    broken = there.violation > 0.1 * there.violation.max(initial=0.0)
-    return Found(there.state, tuple(done), False, broken, smooth.laws(HARDEST))
 
 
 def _wanted(
@@ -196,37 +189,10 @@ def _wanted(
     return np.where(next_active(system, state, increment, tied)[0], CLOSED, OPEN)
 
 
-def _unbalanced(system: Linearised, state: State, increment: Increment) -> float:
-    internal = system.internal(state)
-    residual = system.unbalanced(state, internal)
-    return float(np.abs(residual).max(initial=0.0) / largest_force(system, state, internal, increment))
-
-
-def _smooth_laws(system: Linearised, state: State, reference: float, softness: float) -> list[LawRows]:
-    laws = []
-    parts = (system.gap(state), state.multipliers, state.closed, state.slipping)
-    for pair, g, p, closed, slips in zip(system.pairs, *map(system.split, parts)):
-        at, asked = pair.points, pair.contact.law
-        epsilon, tension = max(pair.contact.epsilon, softness**2), max(TENSION_START, softness)
-        if pair.frictional and pair.smooth:
-            law = SmoothCoulomb(pair.stiffness, pair.friction(system.factors), float(np.sqrt(epsilon)), reference)
-            laws.append(at_multipliers(pair, law, g, p, closed))
-        elif pair.frictional:
-            laws.append(at_multipliers(pair, coulomb(pair, system), g, p, closed, slips))
-        elif at is not None:
-            gap = at.gap + at.operator @ state.unknowns + at.prescribed @ system.factors
-            laws.append(in_the_mean(at, ConstraintFunction(at.stiffness, epsilon, reference, tension), gap, p))
-        elif pair.tied or isinstance(asked, str):
-            laws.append(at_multipliers(pair, Tied() if pair.tied else Complementarity(pair.stiffness), g, p, closed))
-        else:
-            laws.append(at_multipliers(pair, asked, g, p, closed))
-    return laws
-
-
-def _line_search(smooth: Smooth, state: State, full: State, laws: Laws) -> tuple[State, bool]:
+def _line_search(smooth: Smooth, state: State, full: State) -> tuple[State, bool]:
     """The step shortened until the law's residual shrinks, and whether it does in the end."""
 
     def size(at: State) -> float:
-        return float(np.linalg.norm(smooth.violation(laws(smooth.solver.system, at))))
+        return float(np.linalg.norm(smooth.violation(smooth.laws(smooth.solver.system, at))))
 
     return shortened(full, lambda share: part_of(state, full, share), size, size(state), smooth.increment.settings)

@@ -16,7 +16,7 @@ from abut.nonlinear.load_step import Task, load_step
 from abut.nonlinear.march import Begin, Control
 from abut.nonlinear.pace import Pace
 from abut.nonlinear.settings import Settings
-from abut.problem.problem import ContactProblem, Problem
+from abut.problem.problem import ContactProblem
 from abut.solution.state import State
 
 ABSURD = 1e6  # displacement over model size that no units explain
@@ -27,36 +27,29 @@ class SmallSteps:
 
     def __init__(self, problem: ContactProblem, first: State, solver: LinearSolver, control: Control) -> None:
         self._problem, self._first, self._solver, self._control = problem, first, solver, control
-        self._ready: tuple[Problem, Prepared] | None = None
+        self._ready: Again | None = None
 
     def again(self) -> Again:
         """What it takes to solve steps again."""
-        if self._ready is None:
-            self.prepare()
+        self.prepare()
         assert self._ready is not None
-        return Again(
-            self._ready[0], self._solver, self._ready[1], self._control.limit, self._control.settings, solve_step
-        )
+        return self._ready
 
     def prepare(self) -> None:
         """As in ``Stepper``."""
         if self._ready is None:
             self._control.prepares(self._solver)
-            condensed = self._solver.condensed(self._problem)
-            first = condensed.linearise(self._first, condensed.frame(self._first), self._first)
-            self._ready = condensed, self._solver.prepare(first, None)
-            self._control.prepared(self._solver.note(self._ready[1]))
+            self._ready = prepared(self._problem, self._solver, self._first, self._control.settings)
+            self._control.prepared(self._solver.note(self._ready.prepared))
 
     def attempts(self, begin: Begin, pace: Pace) -> Sequence[Attempt]:
         """As in ``Stepper``."""
-        assert self._ready is not None
         assert pace.end is not None
-        condensed, prepared = self._ready
-        increment = Increment(begin.number, begin.before.largest, self._control.settings)
+        ready, increment = self.again(), Increment(begin.number, begin.before.largest, self._control.settings)
         task = Task(
-            condensed, begin.before, self._solver, increment, self._control.limit, self._control.observe, solve_step
+            ready.problem, begin.before, ready.solver, increment, ready.limit, self._control.observe, ready.search
         )
-        return [self._sound(self._steady(task, pace.end, prepared))]
+        return [self._sound(self._steady(task, pace.end, ready.prepared))]
 
     def _steady(self, task: Task, end: float, prepared: Prepared) -> Attempt:
         """A step, solved again until a fluid is where it has got to at its end."""

@@ -25,7 +25,7 @@ def circling(met: Sequence[tuple[bytes, float]], settings: Settings) -> bool:
     met: status and error of each iteration."""
 
     def same(one: tuple[bytes, float], other: tuple[bytes, float]) -> bool:
-        return one[0] == other[0] and abs(one[1] - other[1]) <= settings.interior.met * other[1]
+        return one[0] == other[0] and abs(one[1] - other[1]) <= settings.newton.same * other[1]
 
     return any(same(met[-1], met[k]) and same(met[-2], met[k - 1]) for k in range(1, len(met) - 2))
 

@@ -18,8 +18,3 @@ def with_drag(state: State, force: NDArray[np.float64] | None) -> State:
 def is_dragged(state: State) -> bool:
     """Whether the state has been reached under a drag."""
     return state.history.drag is not None
-
-
-def drag_of(state: State) -> NDArray[np.float64]:
-    """(n_free,) the force of the drag in a state, zero where there is none."""
-    return np.zeros(len(state.unknowns)) if state.history.drag is None else state.history.drag
