@@ -11,9 +11,9 @@
 
 namespace abut {
 
-// Double contraction of two symmetric tensors of six components.
+// Double contraction of two symmetric tensors of six components; sums that do not wait for each other.
 inline double contracted(const double *a, const double *b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2 * (a[3] * b[3] + a[4] * b[4] + a[5] * b[5]);
+  return (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + 2 * (a[5] * b[5] + (a[3] * b[3] + a[4] * b[4])));
 }
 
 // Isotropic linear elasticity by bulk and shear modulus.
@@ -160,8 +160,8 @@ private:
     const J2 &law;
     const double *deviator, *before; // of the trial stress; the history
     double start, amount = 0;
-    double normal[STRAINS], turning[STRAINS]; // unit normal; derivative of the shifted trial stress by the amount
-    double size, excess, slope;               // of the shifted trial stress; the equation and minus its derivative
+    double normal[STRAINS], turning[STRAINS]; // shifted trial stress, a unit normal once solved; by the amount
+    double size, along, excess, slope;        // of the former; of the latter, along it; the equation, minus its derivative
     double kinematic, stiffening;             // modulus of the back stresses after an amount, secant and tangent
 
     Flow(const J2 &law, const double *deviator, const double *before, double start)
@@ -179,21 +179,21 @@ private:
       for (std::size_t k = 0; 2 * k < back.size(); ++k) {
         const double share = 1 / (1 + back[2 * k + 1] * amount);
         kinematic += share * back[2 * k], stiffening += share * share * back[2 * k];
-        for (int s = 0; before && s < STRAINS; ++s) {
-          const double old = 2.0 / 3 * back[2 * k] * before[BACK + k * STRAINS + s];
-          normal[s] -= share * old, turning[s] += back[2 * k + 1] * share * share * old;
-        }
+        if (!before)
+          continue;
+        const double *old = before + BACK + k * STRAINS;
+        const double by = 2.0 / 3 * back[2 * k] * share, turned = back[2 * k + 1] * share * by;
+        for (int s = 0; s < STRAINS; ++s)
+          normal[s] -= by * old[s], turning[s] += turned * old[s];
       }
       size = std::sqrt(contracted(normal, normal));
-      const double over = size > 0 ? 1 / size : 1;
-      for (double &value : normal)
-        value *= over;
+      along = size > 0 ? contracted(normal, turning) / size : 0;
     }
 
     void evaluate() {
       const auto [yield, hardening] = law.yield_stress(start + amount);
       excess = ROOT * size - (3 * law.elastic.shear + kinematic) * amount - yield;
-      slope = 3 * law.elastic.shear + hardening + stiffening - ROOT * contracted(normal, turning);
+      slope = 3 * law.elastic.shear + hardening + stiffening - ROOT * along;
     }
 
     // Newton's method within the bounds where the excess changes its sign.
@@ -217,12 +217,15 @@ private:
           shift();
         evaluate();
       }
+      const double over = size > 0 ? 1 / size : 1;
+      for (double &value : normal)
+        value *= over;
     }
 
     // The consistent tangent, theory (Y6), (Y7).
     void linearise(Flowing &tangent) const {
       const double shear = law.elastic.shear;
-      const double bent = 2 * shear * ROOT * amount / size, along = contracted(normal, turning);
+      const double bent = 2 * shear * ROOT * amount / size;
       const double by = ROOT * 2 * shear / slope; // amount by strain, times the normal
       tangent.flows = true;
       tangent.diagonal = 2 * shear * (1 - bent), tangent.spherical = law.elastic.bulk - tangent.diagonal / 3;

@@ -89,7 +89,7 @@ def respond(
         new = integrate(solids, group, group.rule, moved, temperature, history, wanted, since)
         energy[group.cells] = of_cells
         after.setdefault(group.body, []).extend(new)
-    history = {body: np.concatenate(parts) for body, parts in after.items() if body}
+    history = {body: parts[0] if len(parts) == 1 else np.concatenate(parts) for body, parts in after.items() if body}
     total = force.ravel()
     slope: Operator = None if values is None else _matrix_of(solids, values)
     more = pressure_response(solids, moved, temperature, tangent, since)

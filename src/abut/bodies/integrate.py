@@ -93,7 +93,7 @@ def _compiled(
         at = replace(at, thermal=None, change=places(solids, group, rule, temperature).change)
     n = len(group.cells) * len(rule[1])
     before = history[group.body][group.first : group.first + n] if history else material.initial(n)
-    after = np.array(before)
+    after = np.empty(before.shape)  # all of it is written
     found = kernel.integrate(replace(at, before=np.ascontiguousarray(before)), replace(wanted, after=after))
     require_sound(solids, group, found)
     return [after]
