@@ -9,7 +9,7 @@ import numpy as np
 
 from abut.bodies.stress_stiffness import stress_stiffness
 from abut.errors import InputError, nearest
-from abut.model import Buckling, Frequencies, Harmonic, Model, Transient
+from abut.model import Buckling, Centrifugal, Frequencies, Harmonic, Model, Transient
 from abut.model.response import basis_of
 from abut.modes.buckling import buckling
 from abut.modes.complex_frequencies import complex_frequencies
@@ -19,6 +19,7 @@ from abut.modes.held import Held, held
 from abut.modes.response import respond
 from abut.modes.sliding import sliding
 from abut.modes.spinning import spin_softening
+from abut.modes.whirling import whirling_frequencies
 from abut.nonlinear.attempt import Attempt
 from abut.probing import Place
 from abut.problem.assembly import Assembled
@@ -44,6 +45,7 @@ def check_modes(model: Model, team: bool) -> None:
         if isinstance(wanted, Frequencies):
             densities(model)
             _check_open(model, wanted)
+            _check_turning(model, wanted)
     if model.connectors:
         raise InputError(
             "modes: frequencies and buckling loads of assemblies with connectors are not known; leave one out"
@@ -54,6 +56,16 @@ def check_modes(model: Model, team: bool) -> None:
         raise InputError(
             f'buckling: linear buckling is about bodies at small displacements, and kinematics is "{model.kinematics}"; '
             "with it the load steps themselves lead to the load at which the assembly gives way"
+        )
+
+
+def _check_turning(model: Model, wanted: Frequencies) -> None:
+    if wanted.coriolis and not any(isinstance(load, Centrifugal) for load in model.loads):
+        raise InputError("frequencies: coriolis: nothing turns; give a load of kind centrifugal, with its speed")
+    if wanted.coriolis and model.mesh.axisymmetric:
+        raise InputError(
+            "frequencies: coriolis: these forces twist what moves away from the axis, and axisymmetric models have no "
+            "twist; model the whole in 3D"
         )
 
 
@@ -165,8 +177,10 @@ def _found(at: Reached, wanted: Frequencies | Buckling) -> tuple[ModesResult, ..
 
 def _one(at: Reached, wanted: Frequencies) -> ModesResult:
     tight = at.tight(wanted)
-    if wanted.complex:
-        slides = sliding(at.system, at.state, tight)
+    slides = sliding(at.system, at.state, tight) if wanted.complex else None
+    if wanted.coriolis:
+        return whirling_frequencies(at.problem.model, at.near, tight, slides, at.state.time, wanted)
+    if slides is not None:
         return complex_frequencies(at.problem.model, at.near, tight, slides, wanted)
     return frequencies(at.problem.model, at.near, tight, wanted)
 
