@@ -159,3 +159,20 @@ def test_friction_makes_them_complex_without_a_parameter(tmp_path: Path) -> None
     path = tmp_path / "deck.inp"
     path.write_text(bars(PUSH, LOADED, CORIOLIS.replace(", CORIOLIS", "")), encoding="utf-8")
     assert [(each.complex, each.coriolis) for each in load_job(path).model.modes] == [(False, False), (True, False)]
+
+
+@pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not installed")
+def test_the_mass_of_a_rigid_body_counts(tmp_path: Path) -> None:
+    """A bar with a heavy head of the same elements, to the seven digits that CalculiX prints."""
+    corners = [(0.0, 0.0), (SIDE, 0.0), (SIDE, SIDE), (0.0, SIDE)]
+    nodes = [f"{4 * i + k}, {5.0 * i}, {y}, {z}" for i in range(15) for k, (y, z) in enumerate(corners, 1)]
+    cells = [f"{i + 1}, " + ", ".join(str(4 * i + k) for k in range(1, 9)) for i in range(14)]
+    text = [
+        "*NODE", *nodes, "999, 60., 2., 2.", "*ELEMENT, TYPE=C3D8, ELSET=BAR", *cells[:10],
+        "*ELEMENT, TYPE=C3D8, ELSET=HEAD", *cells[10:], "*MATERIAL, NAME=STEEL", "*ELASTIC", f"{YOUNG}, 0.",
+        "*DENSITY", f"{DENSITY}", "*MATERIAL, NAME=LEAD", "*ELASTIC", f"{YOUNG}, 0.", "*DENSITY", "30e-9",
+        "*SOLID SECTION, ELSET=BAR, MATERIAL=STEEL", "*SOLID SECTION, ELSET=HEAD, MATERIAL=LEAD",
+        "*RIGID BODY, ELSET=HEAD, REF NODE=999", "*BOUNDARY", *(f"{i}, 1, 3" for i in (1, 2, 3, 4)), FREQUENCY,
+    ]  # fmt: skip
+    found = modes(tmp_path, "\n".join(text))[0]
+    np.testing.assert_allclose(found.eigenvalues, calculix(tmp_path), rtol=1e-6)

@@ -44,6 +44,10 @@ def check_modes(model: Model, team: bool) -> None:
             )
         if isinstance(wanted, Frequencies):
             densities(model)
+            if wanted.coriolis and any(rigid.density for rigid in model.rigid):
+                raise InputError(
+                    "frequencies: coriolis: rigid bodies with a mass do not turn; make them solids of a stiff material"
+                )
             _check_open(model, wanted)
             _check_turning(model, wanted)
     if model.connectors:
@@ -74,6 +78,16 @@ def _check_open(model: Model, wanted: Frequencies) -> None:
     for name in wanted.open:
         if name not in known:
             raise InputError(f"frequencies: open: no contact named '{name}'{nearest(str(name), known)}")
+
+
+def massless(model: Model) -> list[str]:
+    """What to say of rigid bodies that may move and have no mass."""
+    free = [
+        rigid for rigid in model.rigid if not rigid.density and None in (getattr(rigid, a) for a in "xyz"[: model.dim])
+    ]
+    if not any(isinstance(wanted, Frequencies) for wanted in model.modes):
+        return []
+    return [f"frequencies: rigid body '{rigid.body}' has no mass; give it a density where it counts" for rigid in free]
 
 
 @dataclass(frozen=True)
