@@ -40,7 +40,7 @@ REASONS = (
     ),
     (
         r"FREQUENCY|BUCKLE|MULTISTAGE",
-        "frequencies of the unloaded model beside contact or large displacements, complex, multistage",
+        "frequencies with loads in their step or limits, with forces of a flow, multistage",
         "the step in a deck of its own",
     ),
     (

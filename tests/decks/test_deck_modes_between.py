@@ -114,3 +114,65 @@ def test_that_contact_holds_nothing_is_told(tmp_path: Path) -> None:
     for steps, told in (((FREQUENCY, PUSH), True), ((PUSH, LOADED), False)):
         path.write_text(bars(*steps), encoding="utf-8")
         assert any("contact holds nothing" in note for note in load_job(path).notes) == told
+
+
+def turning(*steps: str) -> str:
+    """The bars, apart from each other and clamped at their far ends, turn about their axis."""
+    spin = "*STEP, NLGEOM\n*STATIC\n*DLOAD\nBARS, CENTRIF, 4e6, 0., 2., 2., 1., 0., 0.\n*END STEP"
+    text = bars(spin, *steps, overlap=-1.0)
+    left_out = ("ALL, 2, 3", "NEAR, 1", "FAR, 1")
+    kept = "\n".join(line for line in text.splitlines() if line not in left_out)
+    return kept.replace("*BOUNDARY\n", "*BOUNDARY\nNEAR, 1, 3\nFAR, 1, 3\n", 1)
+
+
+STORED = LOADED.replace("*FREQUENCY\n4", "*FREQUENCY, STORAGE=YES\n40")
+CORIOLIS = "*STEP, PERTURBATION\n*COMPLEX FREQUENCY, CORIOLIS\n4\n*END STEP"
+
+
+@pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not installed")
+def test_coriolis_forces_beside_calculix(tmp_path: Path) -> None:
+    """Bending in two planes whirls with and against the rotation; CalculiX makes it of 40 real modes."""
+    real, whirling = modes(tmp_path, turning(STORED, CORIOLIS))
+    assert not len(real.whirl)
+    subprocess.run(["ccx", "deck"], cwd=tmp_path, check=True, capture_output=True, timeout=60)
+    table = (tmp_path / "deck.dat").read_text().split("MODE NO                     FREQUENCY")[1]
+    theirs = [float(value) for value in re.findall(r"^ +\d+ +\S+ +(\S+) +\S+ *$", table, re.MULTILINE)[:4]]
+    np.testing.assert_allclose(whirling.values, theirs, rtol=1e-3)
+    assert np.abs(whirling.values / real.values[:4] - 1.0).max() > 0.01
+
+
+@pytest.mark.parametrize(
+    "steps",
+    [
+        (STORED, CORIOLIS.replace("CORIOLIS", "FLUTTER")),
+        (STORED.replace(", PERTURBATION", ""), CORIOLIS),
+        (CORIOLIS,),
+        (STORED, PUSH, CORIOLIS),
+    ],
+)
+def test_other_complex_frequencies_are_refused(tmp_path: Path, steps: tuple[str, ...]) -> None:
+    with pytest.raises(InputError, match="COMPLEX FREQUENCY"):
+        modes(tmp_path, turning(*steps))
+
+
+def test_friction_makes_them_complex_without_a_parameter(tmp_path: Path) -> None:
+    path = tmp_path / "deck.inp"
+    path.write_text(bars(PUSH, LOADED, CORIOLIS.replace(", CORIOLIS", "")), encoding="utf-8")
+    assert [(each.complex, each.coriolis) for each in load_job(path).model.modes] == [(False, False), (True, False)]
+
+
+@pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not installed")
+def test_the_mass_of_a_rigid_body_counts(tmp_path: Path) -> None:
+    """A bar with a heavy head of the same elements, to the seven digits that CalculiX prints."""
+    corners = [(0.0, 0.0), (SIDE, 0.0), (SIDE, SIDE), (0.0, SIDE)]
+    nodes = [f"{4 * i + k}, {5.0 * i}, {y}, {z}" for i in range(15) for k, (y, z) in enumerate(corners, 1)]
+    cells = [f"{i + 1}, " + ", ".join(str(4 * i + k) for k in range(1, 9)) for i in range(14)]
+    text = [
+        "*NODE", *nodes, "999, 60., 2., 2.", "*ELEMENT, TYPE=C3D8, ELSET=BAR", *cells[:10],
+        "*ELEMENT, TYPE=C3D8, ELSET=HEAD", *cells[10:], "*MATERIAL, NAME=STEEL", "*ELASTIC", f"{YOUNG}, 0.",
+        "*DENSITY", f"{DENSITY}", "*MATERIAL, NAME=LEAD", "*ELASTIC", f"{YOUNG}, 0.", "*DENSITY", "30e-9",
+        "*SOLID SECTION, ELSET=BAR, MATERIAL=STEEL", "*SOLID SECTION, ELSET=HEAD, MATERIAL=LEAD",
+        "*RIGID BODY, ELSET=HEAD, REF NODE=999", "*BOUNDARY", *(f"{i}, 1, 3" for i in (1, 2, 3, 4)), FREQUENCY,
+    ]  # fmt: skip
+    found = modes(tmp_path, "\n".join(text))[0]
+    np.testing.assert_allclose(found.eigenvalues, calculix(tmp_path), rtol=1e-6)

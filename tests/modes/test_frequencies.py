@@ -255,3 +255,33 @@ def test_bars_in_a_row_slide_on_each_other_and_vibrate_apart():
 def test_what_is_open_is_a_contact():
     with pytest.raises(InputError, match="did you mean 'joint'"):
         abut.solve(row(abut.Frequencies(1, open=["joit"])))
+
+
+def headed(density: float) -> abut.Model:
+    """A light bar along x with a rigid head of 20 by 10 tied to it."""
+    light = abut.LinearElastic(YOUNG, 0.0, density=1e-14)
+    mesh = make.join(
+        {"bar": make.rectangle([0, 100], [0, 10], cells=[10, 1]), "head": make.rectangle([100, 120], [0, 10])}
+    )
+    return abut.Model(
+        mesh,
+        plane="stress",
+        solids=[abut.Solid("bar", light)],
+        rigid=[abut.Rigid("head", y=0.0, rz=0.0, density=density)],
+        supports=[abut.Support("bar.left", x=0, y=0)],
+        contacts=[abut.Contact("bar.right", "head.left", kind="tied")],
+        modes=[abut.Frequencies(1)],
+    )
+
+
+def test_a_rigid_head_swings_on_a_light_bar():
+    """omega^2 = (E A / L) / m."""
+    result = found(headed(1e-6)).modes[0]
+    np.testing.assert_allclose(result.eigenvalues, [YOUNG * 10.0 / 100.0 / (1e-6 * 200.0)], rtol=1e-5)
+
+
+def test_a_rigid_body_without_mass_is_told():
+    assert any("rigid body 'head' has no mass" in note for note in found(headed(0.0)).notes)
+    assert not any("no mass" in note for note in found(headed(1e-6)).notes)
+    with pytest.raises(InputError, match="density"):
+        abut.Rigid("head", density=-1.0)

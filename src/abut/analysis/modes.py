@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from abut.errors import InputError, nearest
-from abut.model import Buckling, Frequencies, Harmonic, Model, Transient
+from abut.model import Buckling, Centrifugal, Frequencies, Harmonic, Model, Transient
 from abut.model.response import basis_of
 from abut.modes.buckling import buckling
 from abut.modes.complex_frequencies import complex_frequencies
@@ -20,6 +20,7 @@ from abut.modes.held import Eigensolver, Held, held
 from abut.modes.response import respond
 from abut.modes.sliding import sliding
 from abut.modes.spinning import spin_softening
+from abut.modes.whirling import whirling_frequencies
 from abut.nonlinear.attempt import Attempt
 from abut.probing import Place
 from abut.problem.assembly import Assembled
@@ -57,7 +58,12 @@ def check_modes(model: Model, team: bool) -> None:
             )
         if isinstance(wanted, Frequencies):
             densities(model)
+            if wanted.coriolis and any(rigid.density for rigid in model.rigid):
+                raise InputError(
+                    "frequencies: coriolis: rigid bodies with a mass do not turn; make them solids of a stiff material"
+                )
             _check_open(model, wanted)
+            _check_turning(model, wanted)
     if model.connectors:
         raise InputError(
             "modes: frequencies and buckling loads of assemblies with connectors are not known; leave one out"
@@ -71,6 +77,16 @@ def check_modes(model: Model, team: bool) -> None:
         )
 
 
+def _check_turning(model: Model, wanted: Frequencies) -> None:
+    if wanted.coriolis and not any(isinstance(load, Centrifugal) for load in model.loads):
+        raise InputError("frequencies: coriolis: nothing turns; give a load of kind centrifugal, with its speed")
+    if wanted.coriolis and model.mesh.axisymmetric:
+        raise InputError(
+            "frequencies: coriolis: these forces twist what moves away from the axis, and axisymmetric models have no "
+            "twist; model the whole in 3D"
+        )
+
+
 def _check_open(model: Model, wanted: Frequencies) -> None:
     known = [contact.name for contact in model.contacts]
     for name in wanted.open:
@@ -81,12 +97,22 @@ def _check_open(model: Model, wanted: Frequencies) -> None:
 def _check_team(model: Model) -> None:
     """Raise InputError for what processes, or PETSc on one, cannot find."""
     for wanted in model.modes:
-        if isinstance(wanted, Frequencies) and (wanted.complex or any(wanted.diameters)):
-            what = "complex = true" if wanted.complex else "nodal diameters other than 0"
+        if isinstance(wanted, Frequencies) and (wanted.complex or wanted.coriolis or any(wanted.diameters)):
+            what = "nodal diameters other than 0" if any(wanted.diameters) else "complex frequencies"
             raise InputError(f"frequencies: {what}: found on one process without PETSc (solve.linear); start one only")
     from abut.parallel.launch import require_slepc
 
     require_slepc()
+
+
+def massless(model: Model) -> list[str]:
+    """What to say of rigid bodies that may move and have no mass."""
+    free = [
+        rigid for rigid in model.rigid if not rigid.density and None in (getattr(rigid, a) for a in "xyz"[: model.dim])
+    ]
+    if not any(isinstance(wanted, Frequencies) for wanted in model.modes):
+        return []
+    return [f"frequencies: rigid body '{rigid.body}' has no mass; give it a density where it counts" for rigid in free]
 
 
 @dataclass(frozen=True)
@@ -194,8 +220,10 @@ def _found(at: Reached, wanted: Frequencies | Buckling) -> tuple[ModesResult, ..
 
 def _one(at: Reached, wanted: Frequencies) -> ModesResult:
     tight = at.tight(wanted)
-    if wanted.complex:
-        slides = sliding(at.system, at.state, tight)
+    slides = sliding(at.system, at.state, tight) if wanted.complex else None
+    if wanted.coriolis:
+        return whirling_frequencies(at.problem.model, at.near, tight, slides, at.state.time, wanted)
+    if slides is not None:
         return complex_frequencies(at.problem.model, at.near, tight, slides, wanted)
     model = at.problem.model
     return frequencies(model, at.near, tight, at.bodies.mass(densities(model)), wanted)

@@ -13,7 +13,7 @@ from abut.analysis.deadline import Deadline
 from abut.analysis.interpolation_error import Mended, is_mended, mended
 from abut.analysis.limit_load import limit_load, near_limit, yields
 from abut.analysis.linear_solvers import assembled_bodies, linear_solver, setting_up, solver_kind
-from abut.analysis.modes import check_modes, eigensolver, modes
+from abut.analysis.modes import check_modes, eigensolver, massless, modes
 from abut.analysis.parts import whole
 from abut.analysis.results import Acted, step_result
 from abut.analysis.step_records import check_order, restored, saved_step
@@ -198,6 +198,8 @@ class Run:
         if not self.model.modes or not all(step.converged for step in self.steps):
             return
         self.told.observe(Phase("frequencies and buckling"))
+        for text in massless(self.model):
+            self.told.note(text)
         self.modes, self.responses = modes(self.assembled, self.looked, self.places, eigensolver(self.team))
         self.clock.mark("modes")
 

@@ -45,6 +45,7 @@ from abut.benchmarks import (
     stability,
     started,
     subsurface,
+    whirling,
 )
 from abut.benchmarks.record import Benchmark, Outcome, Reference, run
 
@@ -93,6 +94,7 @@ BENCHMARKS: dict[str, Benchmark] = {
         *connectors.BENCHMARKS,
         *modes.BENCHMARKS,
         *response.BENCHMARKS,
+        *whirling.BENCHMARKS,
         *mapped.BENCHMARKS,
         *penetration.BENCHMARKS,
     )

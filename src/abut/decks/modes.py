@@ -31,6 +31,8 @@ def _frequencies(deck: Deck, groups: Groups, contacts: Sequence[str], asked: Ask
         _check_unloaded(deck, asked)
     names = tuple(contacts[number] for number in asked.open)
     wanted = Frequencies(asked.count, stiffening=asked.loaded, time=time_of(deck, asked), open=names)
+    if asked.by:
+        return replace(wanted, complex=asked.by == "FRICTION", coriolis=asked.by == "CORIOLIS")
     if not any(asked.diameters):
         return wanted
     side = groups.node_set(turned_side(deck, groups), "sector-side")

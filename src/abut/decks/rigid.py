@@ -18,17 +18,19 @@ from abut.model import Rigid
 from abut.model.conditions import TURNS
 
 
-def rigid_bodies(deck: Deck, names: Sequence[str], plane: str | None) -> list[Rigid]:
-    """Bodies that move as a whole, ``names`` those of their bodies in the mesh. Raises InputError for one without its
-    reference node."""
+def rigid_bodies(deck: Deck, bodies: Mapping[str, Piece], plane: str | None) -> list[Rigid]:
+    """Bodies that move as a whole, ``bodies`` by their names in the mesh, with a mass where modes are asked for. Raises
+    InputError for one without its reference node."""
     result = []
     given = courses(deck, "boundary") if deck.rigid else {}
-    for name, body in zip(names, deck.rigid):
+    for (name, piece), body in zip(bodies.items(), deck.rigid):
+        density = piece.section.material.density if deck.modes is not None else 0.0
         motion = motion_of(_components(given, body), components(plane))
         if body.reference not in deck.nodes:
             raise DeckError(body.place, f"*RIGID BODY: REF NODE {body.reference} does not exist; give it in *NODE")
         reference = tuple(coordinates(deck, np.array([body.reference]))[0][: 2 if plane else 3].tolist())
-        result.append(Rigid(name, reference, **motion.values, amplitude=motion.amplitude, amplitudes=motion.amplitudes))
+        moved = Rigid(name, reference, **motion.values, amplitude=motion.amplitude, amplitudes=motion.amplitudes)
+        result.append(replace(moved, density=density))
     return result
 
 

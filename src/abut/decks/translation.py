@@ -121,7 +121,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
         with reasons.gathered():
             contacts.append(_contact(deck, groups, pair, hard, notes))
     solids = _solids(deck, {name: piece for name, piece in parts.items() if name not in moving}, plane, reasons)
-    rigid, bound = _referenced(deck, groups, moving, plane, reasons)
+    rigid, bound = _referenced(deck, groups, {name: parts[name] for name in moving}, plane, reasons)
     notes += [*_idle(deck, groups), *unlisted_notes(deck), *beside_notes(deck)]
     references = dict(zip([*moving, *(coupling.name for coupling in bound)], reference_nodes(deck)))
     modulus = max((solid.material.modulus for solid in solids), default=1.0)
@@ -213,9 +213,9 @@ def _steps(deck: Deck, finite: bool) -> SolveOptions:
 
 
 def _referenced(
-    deck: Deck, groups: Groups, moving: list[str], plane: str | None, reasons: Reasons
+    deck: Deck, groups: Groups, moving: Mapping[str, Piece], plane: str | None, reasons: Reasons
 ) -> tuple[list[Rigid], list[Coupling]]:
-    """Rigid bodies, ``moving`` their names, and couplings."""
+    """Rigid bodies, ``moving`` by their names, and couplings."""
     rigid: list[Rigid] = []
     bound: list[Coupling] = []
     with reasons.gathered():

@@ -291,6 +291,7 @@ MEANINGS: dict[str, dict[str, str]] = {
         "ry": "the same about y; left out: free [radian]",
         "rz": "the same about z (in 2D the only one); left out: free [radian]",
         "amplitudes": "of single components, { y = [...], rz = [...] }: pairs of time and factor; others follow amplitude",
+        "density": "of its cells, for frequencies and vibrations [mass/volume]",
     },
     **JOINING,
     "SpringTable": {

@@ -10,6 +10,8 @@ RUN: dict[str, dict[str, str]] = {
         "stiffening": "whether stresses and centrifugal forces at the end of the last step change the stiffness; under "
         "finite kinematics always",
         "complex": "whether friction of what slips follows the pressure: frequencies with rates of growth (squeal)",
+        "coriolis": "whether Coriolis forces act on what centrifugal forces say to turn: frequencies seen from there, of "
+        "whirling with and against the rotation",
         "diameters": "nodal diameters of a whole of alike sectors, of each of which count frequencies are found: from 0 to "
         "half the sectors; others than 0 come twice each",
         "sectors": "how many sectors like the modelled one make up the whole turn, where there are other diameters than 0",

@@ -128,6 +128,7 @@ class RigidTable(Table):
     rz: Number | None = None
     amplitude: Points | None = None
     amplitudes: dict[str, Points] = {}
+    density: Annotated[Number, Field(ge=0)] = 0.0
 
 
 class CouplingTable(Table):

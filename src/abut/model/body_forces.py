@@ -133,5 +133,12 @@ class Centrifugal:
             axis = np.array(self.axis) / np.linalg.norm(self.axis)
         return np.asarray(self.speed**2 * (np.eye(dim) - np.outer(axis, axis)))
 
+    def velocity(self, dim: int) -> NDArray[np.float64]:
+        """(dim, dim) by which the velocity of what turns so follows from the place: speed a x r, about the axis a."""
+        if dim == 2:
+            return np.array([[0.0, -self.speed], [self.speed, 0.0]])
+        axis = np.array((0.0, 0.0, 1.0) if self.axis is None else self.axis)
+        return np.asarray(np.cross(self.speed * axis / np.linalg.norm(axis), np.eye(3)).T)
+
 
 Load = Pressure | Traction | Force | Moment | NodalForce | Temperature | Gravity | Centrifugal | BodyForce

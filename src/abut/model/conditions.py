@@ -294,6 +294,8 @@ class Rigid:
         Of all these over time.
     amplitudes : mapping of str to Amplitude
         Of some of them, by name.
+    density : float
+        Of its cells, for frequencies and vibrations [mass/volume].
 
     Raises
     ------
@@ -316,9 +318,12 @@ class Rigid:
     rz: float | None = None
     amplitude: History = None
     amplitudes: Mapping[str, Amplitude] = field(default_factory=dict)
+    density: float = 0.0
 
     def __post_init__(self) -> None:
         check_motion(self, f"rigid '{self.body}'")
+        if checks.finite(self.density, f"rigid '{self.body}': density") < 0.0:
+            raise InputError(f"rigid '{self.body}': density: expected a number >= 0, got {self.density!r}")
 
     @property
     def name(self) -> str:

@@ -30,6 +30,9 @@ class Frequencies:
     complex : bool
         Whether friction of what slips follows the pressure as it vibrates: complex frequencies, of which some may grow
         (squeal).
+    coriolis : bool
+        Whether Coriolis forces of what centrifugal forces say to turn act on the vibrations: complex frequencies, seen from
+        the turning bodies, of whirling with and against the rotation.
     diameters : sequence of int
         Nodal diameters, of each of which ``count`` frequencies are found: from 0 to half the number of sectors. Others than
         0 are vibrations in which each sector of a whole of alike sectors is a phase of 2 pi diameter / sectors behind the
@@ -60,6 +63,7 @@ class Frequencies:
     count: int = 10
     stiffening: bool = True
     complex: bool = False
+    coriolis: bool = False
     diameters: Sequence[int] = (0,)
     sectors: float = 0.0
     side: str = ""
@@ -70,10 +74,14 @@ class Frequencies:
         _check_count(self.count, "frequencies")
         check_time(self.time, "frequencies", start=True)
         object.__setattr__(self, "open", checks.listed(self.open, "frequencies: open", "names of contacts"))
-        for name, value in (("stiffening", self.stiffening), ("complex", self.complex)):
+        for name, value in (("stiffening", self.stiffening), ("complex", self.complex), ("coriolis", self.coriolis)):
             if not isinstance(value, bool):
                 raise InputError(f"frequencies: {name}: expected true or false, got {value!r}")
         object.__setattr__(self, "diameters", checks.listed(self.diameters, "frequencies: diameters", "whole numbers"))
+        if self.coriolis and not self.stiffening:
+            raise InputError(
+                "frequencies: coriolis goes with the centrifugal forces' own stiffness; leave stiffening = false out"
+            )
         if self.cyclic or self.sectors or self.side:
             self._check_cyclic()
 
@@ -81,6 +89,11 @@ class Frequencies:
     def locking(self) -> tuple[History, ...]:
         """With a corner at its time, where a load step ends."""
         return turn_at(self.time)
+
+    @property
+    def phased(self) -> bool:
+        """Whether modes are complex: friction follows the pressure, or Coriolis forces act."""
+        return self.complex or self.coriolis
 
     @property
     def cyclic(self) -> bool:
@@ -95,9 +108,9 @@ class Frequencies:
                 raise InputError(
                     f"frequencies: diameters: expected whole numbers from 0 to {self.sectors / 2.0:g}, got {diameter!r}"
                 )
-        if self.complex:
+        if self.phased:
             raise InputError(
-                "frequencies: complex frequencies are those of nodal diameter 0; leave complex or diameters out"
+                "frequencies: complex frequencies are those of nodal diameter 0; leave complex, coriolis or diameters out"
             )
 
 

@@ -244,4 +244,4 @@ def check_responses(mesh: Mesh, modes: Sequence[Wanted], rigid: Collection[str],
 
 def basis_of(modes: Frequencies | Buckling, wanted: Response) -> bool:
     """Whether a response is made of these modes."""
-    return isinstance(modes, Frequencies) and not modes.complex and 0 in modes.diameters and modes.time == wanted.time
+    return isinstance(modes, Frequencies) and not modes.phased and 0 in modes.diameters and modes.time == wanted.time

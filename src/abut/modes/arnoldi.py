@@ -1,4 +1,4 @@
-"""The lowest eigenpairs of an unsymmetric pencil by Arnoldi's method on prepared factors."""
+"""The lowest eigenpairs of unsymmetric pencils, linear and quadratic, by Arnoldi's method on prepared factors."""
 
 from __future__ import annotations
 
@@ -30,13 +30,46 @@ def nearest(solve: Callable[[Vector], Vector], mass: Sparse, free: int, count: i
         return _whole(solve, mass, moving, count)
     start = solve(mass @ np.random.default_rng(0).standard_normal(size))
     operator = spla.LinearOperator((size, size), matvec=lambda x: solve(np.ravel(x)), dtype=float)
+    values, vectors = _converged(
+        lambda: spla.eigs(mass, count, mass, sigma=0.0, which="LM", v0=start, ncv=basis, tol=TOLERANCE, OPinv=operator)
+    )
+    return 1.0 / values, vectors
+
+
+def nearest_of_quadratic(
+    solve: Callable[[Vector], Vector], turning: Sparse, mass: Sparse, free: int, count: int
+) -> tuple[Complex, Complex]:
+    """The ``count`` largest t of -solve(turning x + mass x / t) = t x, or as many as there are, complex ones with their
+    conjugates: (n,), and x (size, n), theory (J13).
+
+    solve: x (size,) by forces; turning, mass: (size, size), the latter symmetric and positive semi-definite; free: how many
+    directions there are. Raises ConvergenceError."""
+    size = mass.shape[0]
+    moving = np.flatnonzero(mass.diagonal() > 0.0)
+    pushed = mass @ np.random.default_rng(0).standard_normal(size)
+    start = solve(pushed)
+    unit = float(
+        np.sqrt(abs(start @ pushed) / (start @ (mass @ start)))
+    )  # of 1 / t, so that both halves are of one size
+    basis = max(2 * count + 2, BASIS)
+    if basis >= 2 * min(len(moving), free):
+        return _whole_quadratic(solve, turning, mass, moving, count, unit)
+
+    def applied(both: Vector) -> Vector:
+        x, faster = np.split(np.ravel(both), 2)
+        return np.concatenate([-solve(turning @ x + unit * (mass @ faster)), x / unit])
+
+    operator = spla.LinearOperator((2 * size, 2 * size), matvec=applied, dtype=float)
+    first = np.concatenate([start, start])
+    values, vectors = _converged(lambda: spla.eigs(operator, count, which="LM", v0=first, ncv=basis, tol=TOLERANCE))
+    return values, vectors[:size]
+
+
+def _converged(find: Callable[[], tuple[Complex, Complex]]) -> tuple[Complex, Complex]:
     try:
-        values, vectors = spla.eigs(
-            mass, count, mass, sigma=0.0, which="LM", v0=start, ncv=basis, tol=TOLERANCE, OPinv=operator
-        )
+        return find()
     except spla.ArpackError as reason:
         raise ConvergenceError(f"modes: Arnoldi's method did not converge ({reason}); ask for fewer modes") from None
-    return 1.0 / values, vectors
 
 
 def _whole(
@@ -49,3 +82,19 @@ def _whole(
     order = order[np.abs(values[order]) > NOTHING * np.abs(values).max()]
     values = values[order].astype(complex)
     return values, columns @ vectors[:, order] / values
+
+
+def _whole_quadratic(
+    solve: Callable[[Vector], Vector], turning: Sparse, mass: Sparse, moving: NDArray[np.int64], count: int, unit: float
+) -> tuple[Complex, Complex]:
+    """As a dense matrix over the unknowns with mass and their velocities over ``unit``."""
+    heavy, turned = (
+        np.column_stack([solve(force) for force in matrix[:, moving].toarray().T]) for matrix in (mass, turning)
+    )
+    n = len(moving)
+    rows = np.hstack([-turned[moving], -unit * heavy[moving]])
+    values, vectors = np.linalg.eig(np.vstack([rows, np.eye(n, 2 * n) / unit]))
+    order = np.argsort(-np.abs(values), kind="stable")[:count]
+    order = order[np.abs(values[order]) > NOTHING * np.abs(values).max()]
+    values, known = values[order].astype(complex), vectors[:n, order]
+    return values, -(turned @ known + heavy @ (known / values)) / values

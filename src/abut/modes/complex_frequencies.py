@@ -35,14 +35,14 @@ def complex_frequencies(
     inverse, vectors = nearest(factors.solve, reduced, reduced.shape[0] - len(held.give), wanted.count + MORE)
     squares = shift + 1.0 / inverse
     order = np.lexsort((squares.imag, np.abs(squares)))  # of a pair the one that grows first
-    order = order[: _whole_pairs(squares[order], wanted.count)]
+    order = order[: whole_pairs(squares[order], wanted.count)]
     squares, inverse, vectors = squares[order], inverse[order], vectors[:, order]
     squares = np.where(np.abs(squares) <= ROUNDING * highest, 0.0, squares)
     again = _applied(factors, reduced, vectors) / inverse
-    residual = np.sqrt(_energy(symmetric, again - vectors) / np.maximum(_energy(symmetric, again), 1e-300))
-    shapes = _turned(np.asarray(constraints.free @ (again / np.sqrt(_energy(reduced, again)))))
+    residual = np.sqrt(energy(symmetric, again - vectors) / np.maximum(energy(symmetric, again), 1e-300))
+    shapes = turned(np.asarray(constraints.free @ (again / np.sqrt(energy(reduced, again)))))
     shapes = shapes.T.reshape(len(squares), -1, model.dim)
-    values, growth = _motion(squares)
+    values, growth = motion_of(squares)
     none = np.zeros((len(squares), 0))
     return ModesResult(
         COMPLEX, values, squares.real.copy(), shapes.real.copy(), none, none, np.zeros(0), float(residual.max()),
@@ -50,7 +50,7 @@ def complex_frequencies(
     )  # fmt: skip
 
 
-def _motion(squares: Complex) -> tuple[Vector, Vector]:
+def motion_of(squares: Complex) -> tuple[Vector, Vector]:
     """Frequencies in cycles per time, and rates of growth: of both motions with the same square that which oscillates
     forward, or without oscillation that which grows."""
     omega = np.sqrt(squares)  # exp(i omega t), with a real part >= 0
@@ -58,7 +58,7 @@ def _motion(squares: Complex) -> tuple[Vector, Vector]:
     return omega.real / (2.0 * np.pi), growth + 0.0  # no -0
 
 
-def _whole_pairs(squares: Complex, count: int) -> int:
+def whole_pairs(squares: Complex, count: int) -> int:
     """How many of squares in order of size are ``count``, or one more where the last one's conjugate comes next."""
     if count >= len(squares):
         return len(squares)
@@ -72,12 +72,12 @@ def _applied(factors: UnsymmetricFactors, reduced: Sparse, vectors: Complex) -> 
     return np.column_stack([factors.solve(f.real) + 1j * factors.solve(f.imag) for f in forces.T])
 
 
-def _energy(matrix: Sparse, vectors: Complex) -> Vector:
+def energy(matrix: Sparse, vectors: Complex) -> Vector:
     """(n,) x^H A x, of vectors (size, n) and a symmetric matrix."""
     return np.asarray(np.abs(sum(np.einsum("im,im->m", x, matrix @ x) for x in (vectors.real, vectors.imag))))
 
 
-def _turned(shapes: Complex) -> Complex:
+def turned(shapes: Complex) -> Complex:
     """With phases by which the largest component of each is real and positive."""
     largest = shapes[np.abs(shapes).argmax(axis=0), np.arange(shapes.shape[1])]
     return np.asarray(shapes * np.conj(largest) / np.abs(largest))

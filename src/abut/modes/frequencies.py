@@ -81,6 +81,7 @@ def relative_energy(stiffness: Operator, change: Vector, vectors: Vector) -> Vec
 def densities(model: Model) -> dict[str, float]:
     """Of all bodies that have one. Raises InputError where none has."""
     found = {solid.body: float(solid.material.density) for solid in model.solids}
+    found |= {rigid.body: rigid.density for rigid in model.rigid}
     if not any(found.values()):
         raise InputError(
             "frequencies: no body has a mass; give the materials a density, in units that go with force, length and time "

@@ -67,6 +67,7 @@ class UnsymmetricFactors:
     held: Held
     pushing: Sparse
     _factors: direct.Factorization = field(init=False, repr=False)
+    _whole: Sparse = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         held, rows = self.held, self.held.rows
@@ -77,9 +78,12 @@ class UnsymmetricFactors:
             to_rows, corner = sp.diags(scale), sp.diags(-(scale**2) * held.give)
             whole = sp.bmat([[whole, (to_rows @ self.pushing).T], [to_rows @ rows, corner]])
         matrix = direct.store_diagonal(whole.tocsr())
+        object.__setattr__(self, "_whole", matrix)
         object.__setattr__(self, "_factors", direct.Factorization(matrix, quick=True, symmetric=False))
 
     def solve(self, force: Vector) -> Vector:
-        """Displacements (n_free,) by forces (n_free,)."""
+        """Displacements (n_free,) by forces (n_free,), corrected once: pivots below 1e-8 of the matrix are perturbed, among
+        which are those of soft springs beside stiff bodies."""
         rhs = np.concatenate([force, np.zeros(self.held.rows.shape[0])])
-        return np.asarray(self._factors.solve(rhs)[: len(force)])
+        found = self._factors.solve(rhs)
+        return np.asarray((found + self._factors.solve(rhs - self._whole @ found))[: len(force)])

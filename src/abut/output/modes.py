@@ -72,6 +72,7 @@ def _one(result: ModesResult) -> Json:
             "unstable": result.unstable.tolist(),
             "slips": result.slips,
         }
+        found |= {"whirl": result.whirl.tolist()} if len(result.whirl) else {}
     return found
 
 
@@ -84,6 +85,8 @@ def _table(solution: Solution) -> str:
         head.insert(1, DIAMETER)
     if any(result.kind == COMPLEX for result in solution.modes):
         head += ["growth_rate", "unstable"]
+    if any(len(result.whirl) for result in solution.modes):
+        head += ["whirl"]
     text = io.StringIO()
     table = csv.DictWriter(text, head, lineterminator="\n")
     table.writeheader()
@@ -100,6 +103,7 @@ def _table(solution: Solution) -> str:
                 row |= {f"{name}_{a}": number for a, number in zip(along, values[i].tolist())}
             if result.kind == COMPLEX:
                 row |= {"growth_rate": result.growth[i], "unstable": "yes" if result.unstable[i] else "no"}
+            row |= {"whirl": result.whirl[i]} if len(result.whirl) else {}
             table.writerow(row)
     return text.getvalue()
 

@@ -29,7 +29,7 @@ def mode_lines(result: ModesResult) -> list[str]:
 
 def stability(result: ModesResult) -> str:
     """Of complex frequencies, in a line."""
-    if not result.slips:
+    if not (result.slips or len(result.whirl)):
         return "nothing slips at the end of the last step, so friction makes none of them complex"
     count = int(result.unstable.sum())
     if not count:
@@ -43,19 +43,32 @@ def stability(result: ModesResult) -> str:
 
 def _complex_lines(result: ModesResult) -> list[str]:
     rows = [
-        f"  {value:.6g}, {growth:.6g}{', unstable' if unstable else ''}"
-        for value, growth, unstable in zip(result.values[:MOST], result.growth, result.unstable)
+        f"  {value:.6g}, {growth:.6g}{f', {around:.3g}' if around is not None else ''}{', unstable' if unstable else ''}"
+        for value, growth, unstable, around in zip(
+            result.values[:MOST], result.growth, result.unstable, _around(result)
+        )
     ]
     more = [f"  and {len(result) - MOST} more, in modes.csv"] if len(result) > MOST else []
-    return [f"{result.kind} (cycles per time, rate of growth per time): {stability(result)}", *rows, *more]
+    whirl = ", whirl from -1 (against the rotation) to 1" if len(result.whirl) else ""
+    return [f"{result.kind} (cycles per time, rate of growth per time{whirl}): {stability(result)}", *rows, *more]
+
+
+def _around(result: ModesResult) -> list[float] | list[None]:
+    """How each mode whirls, None where nothing turns."""
+    return result.whirl.tolist() if len(result.whirl) else [None] * len(result)
 
 
 def _complex_table(result: ModesResult) -> tuple[list[str], list[list[str]], str]:
+    parts = zip(result.values[:MOST], result.growth, result.unstable, _around(result))
     rows = [
-        [f"{i + 1}", f"{value:.6g}", f"{growth:.6g}", "unstable" if unstable else ""]
-        for i, (value, growth, unstable) in enumerate(zip(result.values[:MOST], result.growth, result.unstable))
-    ]
-    head = ["mode", "frequency (cycles per time)", "rate of growth (per time)", ""]
+        [
+            f"{i + 1}", f"{value:.6g}", f"{growth:.6g}", *([] if around is None else [f"{around:.3f}"]),
+            "unstable" if unstable else "",
+        ]
+        for i, (value, growth, unstable, around) in enumerate(parts)
+    ]  # fmt: skip
+    head = ["mode", "frequency (cycles per time)", "rate of growth (per time)"]
+    head += ["whirl (1: with the rotation, -1: against it)", ""] if len(result.whirl) else [""]
     return head, rows, f"Complex frequencies about the end of the last step: {stability(result)}"
 
 

@@ -34,6 +34,8 @@ class ModesResult:
     where a mode is unstable; eigenvalues: the real parts; shapes: real parts, with ``imaginary`` (n, n_points, dim) the
     others, so that x^H M x = 1 and the largest component is real; slips: whether anything slips, without which there is
     nothing to make them complex; no participation; orthogonality: NaN, as they are not orthogonal. Else none of these.
+    whirl: with Coriolis forces (n,), how the whole goes round, seen from the body that turns: 1 in circles with the
+    rotation, -1 against it, 0 to and fro; else none.
 
     diameter: nodal diameters of vibrations of a whole of alike sectors; from 1 on each frequency comes twice, shapes are
     real parts of the modelled sector's and ``imaginary`` the others, in the next sector by an angle of 2 pi diameter over
@@ -54,6 +56,7 @@ class ModesResult:
     imaginary: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0, 0)))
     slips: bool = False
     diameter: int = 0
+    whirl: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
 
     __repr__ = brief
 

@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 
 from abut.io.deck.cards import Card, as_float, key
 from abut.io.deck.reasons import Place
-from abut.io.deck.response_cards import Shaking, parted
+from abut.io.deck.response_cards import Shaking, parted, stored
 
-PROCEDURES = ("FREQUENCY", "BUCKLE")
+COMPLEX = "COMPLEXFREQUENCY"
+PROCEDURES = ("FREQUENCY", "BUCKLE", COMPLEX)
 REMOVAL = "MODELCHANGE"
 CHANGES = (
     "BOUNDARY",
@@ -28,7 +29,7 @@ class Asked:
     """What a step asks for, or several for more nodal diameters. place: of the step; count: how many; after: how many steps
     with loads come before; loaded: about the state that these end with, else about the model before anything acts;
     diameters: nodal ones, of each of which there are ``count``; removed: *MODEL CHANGE, by which contacts hold nothing;
-    open: their numbers, once they are known."""
+    open: their numbers, once they are known; by: what makes modes complex, "CORIOLIS", "FRICTION" or nothing."""
 
     place: Place
     count: int
@@ -37,6 +38,7 @@ class Asked:
     diameters: tuple[int, ...] = (0,)
     removed: tuple[Card, ...] = ()
     open: tuple[int, ...] = ()
+    by: str = ""
 
 
 @dataclass(frozen=True)
@@ -56,6 +58,7 @@ def without_modes(cards: Sequence[Card], ignore: Collection[str] = ()) -> tuple[
 
     Where there are no other steps the first becomes a static one, with its loads for buckling. *FREQUENCY with PERTURBATION
     is about the state that static steps before it end with; without, about the model before anything acts, as in CalculiX.
+    *COMPLEX FREQUENCY is about the loaded state of the *FREQUENCY before it.
     Steps at the end that shake what vibrates are kept as static ones, with their loads."""
     starts = [i for i, card in enumerate(cards) if card.key == "STEP"]
     if not starts:
@@ -76,9 +79,11 @@ def _without(
 ) -> tuple[tuple[Card, ...], Modes | None]:
     """``without_modes`` of cards before and in steps; all cards and None where abut finds no such modes."""
     asking = [i for i, step in enumerate(steps) if any(card.key in PROCEDURES for card in step)]
+    if any(card.key == COMPLEX for step in steps for card in step):  # of modes that *FREQUENCY stores
+        steps = [list(map(stored, step)) for step in steps]
     every = [card for i in asking for card in steps[i] if card.key in PROCEDURES]
     kinds, left_out = {card.key for card in every}, {key(name.lstrip("*")) for name in ignore}
-    if len(kinds) != 1 or len(every) > len(asking) or kinds & left_out or (kinds == {"BUCKLE"} and len(steps) > 1):
+    if not kinds or len(every) > len(asking) or kinds & left_out or ("BUCKLE" in kinds and len(steps) > 1):
         return tuple(cards), None
     asked = _asked(steps, asking, before)
     if asked is None:
@@ -87,7 +92,7 @@ def _without(
     notes = [_note(card, cyclic and not _chosen(steps[i])) for i, card in zip(asking, every)]
     others = [card for i, step in enumerate(steps) if i not in asking for card in step]
     left = others or map(_as_static, steps[0])
-    return (*before, *left), Modes(every[0].key, asked, tuple(filter(None, notes)))
+    return (*before, *left), Modes("BUCKLE" if "BUCKLE" in kinds else "FREQUENCY", asked, tuple(filter(None, notes)))
 
 
 def _asked(steps: Sequence[Sequence[Card]], asking: Sequence[int], before: Sequence[Card]) -> tuple[Asked, ...] | None:
@@ -101,13 +106,22 @@ def _asked(steps: Sequence[Sequence[Card]], asking: Sequence[int], before: Seque
         changed = {card.key for card in step if card not in removed} & set(CHANGES)
         allowed = set(CHANGES if _of_buckling(step) else ("BOUNDARY",)) if len(steps) == 1 else set()
         kept = removed and any(j not in asking for j in range(i, len(steps)))  # gone in steps with loads, too
-        count, diameters = _count(next(card for card in step if card.key in PROCEDURES)), _diameters(step, before)
+        how = next(card for card in step if card.key in PROCEDURES)
+        count, diameters, by = _count(how), _diameters(step, before), ""
+        if how.key == COMPLEX:
+            by, loaded = "CORIOLIS" if how.has("CORIOLIS") else "FRICTION", True
+            if not result or not result[-1].loaded or result[-1].after < after or any(diameters or ()):
+                return None
         if changed - allowed or kept or not count or diameters is None or (loaded and not after and not alone):
             return None
         gone = (*(result[-1].removed if result else ()), *removed)
-        if result and result[-1] == replace(result[-1], count=count, after=after, loaded=loaded, removed=gone):
+        if (
+            result
+            and result[-1] == replace(result[-1], count=count, after=after, loaded=loaded, removed=gone, by=by)
+            and not by
+        ):
             diameters = tuple(dict.fromkeys((*result.pop().diameters, *diameters)))
-        result.append(Asked(step[0].place, count, after, loaded, diameters, gone))
+        result.append(Asked(step[0].place, count, after, loaded, diameters, gone, by=by))
     return tuple(result)
 
 
@@ -160,11 +174,11 @@ def _note(card: Card, cyclic: bool) -> str:
 
 def _count(card: Card) -> int | None:
     """How many modes; None where there is no such number, or an upper limit beside it."""
-    known = {"SOLVER", "STORAGE"} if card.key == "FREQUENCY" else {"SOLVER"}
+    known = {"FREQUENCY": {"SOLVER", "STORAGE"}, "BUCKLE": {"SOLVER"}, COMPLEX: {"CORIOLIS"}}[card.key]
     if not card.lines or set(card.parameters) - known or (card.get("STORAGE") or "NO").upper() != "NO":
         return None
     fields = [text.strip() for text in card.lines[0].fields]
-    upper = fields[2:3] if card.key == "FREQUENCY" else []
+    upper = fields[2:3] if card.key != "BUCKLE" else []
     if any(upper) or not fields[0].isdecimal() or not int(fields[0]):
         return None
     return int(fields[0])

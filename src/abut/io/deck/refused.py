@@ -12,8 +12,9 @@ PROCEDURES = {  # other than *STATIC: what each is, and what to do; ignoring one
     "BUCKLE": ("buckling but as the only step", "make a deck whose only step it is"),
     "CFD": ("flow", "solve the flow elsewhere and give its pressures by *DLOAD, its temperatures by *TEMPERATURE"),
     "COMPLEX FREQUENCY": (
-        "complex eigenfrequencies",
-        "use *FREQUENCY for the real ones, or a job file (abut convert) with complex = true in [frequencies]",
+        "complex eigenfrequencies but with CORIOLIS or of friction (no parameter), without limits, after *FREQUENCY in a "
+        "*STEP, PERTURBATION; FLUTTER takes forces of a flow",
+        "write the steps so",
     ),
     "COUPLED TEMPERATURE-DISPLACEMENT": ("heat transfer coupled with displacement", _HEAT),
     "CRACK PROPAGATION": ("crack propagation", "use *STATIC for the body with the crack as it is"),

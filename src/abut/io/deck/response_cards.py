@@ -43,10 +43,10 @@ def parted(steps: Sequence[list[Card]]) -> tuple[list[list[Card]], list[list[Car
     kept = tuple(one for one in found if one is not None)
     if len(kept) < len(found) or sum(one.between is None for one in kept) > 1:
         return None
-    return [list(map(_stored, step)) for step in steps[:first]], [_static(step) for step in steps[first:]], kept
+    return [list(map(stored, step)) for step in steps[:first]], [_static(step) for step in steps[first:]], kept
 
 
-def _stored(card: Card) -> Card:
+def stored(card: Card) -> Card:
     """*FREQUENCY without STORAGE, which it needs for what follows."""
     if card.key != "FREQUENCY":
         return card
