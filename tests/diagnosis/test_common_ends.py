@@ -47,4 +47,4 @@ def test_straight_cells_at_a_clamp(count: int, named: bool) -> None:
     solution = abut.solve(leaves(count))
     exact = bent_leaves(list(LENGTHS), YOUNG / 12.0, 1.0).forces[0]
     assert (abs(solution.contacts[0].force[1]) > 1.2 * exact) == named
-    assert ["clamp" in text for check, text in cures(solution) if check.name == "resolution"] == [named]
+    assert any("clamp" in text for check, text in cures(solution) if check.name == "resolution") == named

@@ -15,11 +15,13 @@ from abut.analysis.overlap import meant
 from abut.analysis.peaks import Peaks, peaks_of
 from abut.analysis.pressure_error import pressure_error
 from abut.analysis.resolution import resolution, resolution_between_ends
+from abut.analysis.sharp_edge import SharpEdge
 from abut.analysis.thin_give import SHARE
 from abut.contact.contactor_choice import Side
 from abut.contact.geometry import facet_sizes, full_moments, split_at_creases
 from abut.contact.nodal_recovery import at_points
 from abut.contact.rim import rim
+from abut.contact.sides import words
 from abut.model.contact import KINDS
 from abut.problem.pair import Pair
 from abut.solution import Check
@@ -46,6 +48,9 @@ REMOVED = 0.95  # a contactor almost all of which sees no target is hardly what 
 COVERED_TWICE = 1e-3  # share of a facet
 UNSEEN = "no node of the contactor has closed neighbours only"
 NARROW = "contact is less than three facets wide on each side of its middle: refine where it touches"
+EDGE = "a sharp edge presses, whose contact is narrower than a facet"
+FACETS = "one over the number of facets from the edge of contact to its middle, at the end"
+OFF = 0.2  # of the force at a sharp edge, or of how far it moves
 NOTHING = 1e-6  # pressure over the largest so far that is taken for none, after unloading
 
 
@@ -59,8 +64,8 @@ class Surroundings:
     reported pressure was recovered from, theory (P10), by default it itself; gives: the target's share of what both sides
     give way, 0 where it is held; slid: (n_facets,) motion of each along the target, in facets, None where contact follows
     it; sides: as the choice of the contactor sees them, None where it has no part in it;
-    bends: how far a thin part gives way, a length, as from ``thin_give``, None where no side is one; at_sides: what is not
-    continued beyond the sides of a sector, in words."""
+    bends: how far a thin part gives way, a length, as from ``thin_give``, None where no side is one; edge: the sharp
+    edge that carries most of the force; at_sides: what is not continued beyond the sides of a sector, in words."""
 
     reference: float = 0.0
     beside: float = 0.0
@@ -74,6 +79,7 @@ class Surroundings:
     slid: NDArray[np.float64] | None = None
     sides: tuple[Side, Side] | None = None
     bends: float | None = None
+    edge: SharpEdge | None = None
     at_sides: str = ""
 
 
@@ -144,7 +150,8 @@ class _Case:
         sizes = facet_sizes(pair.contactor)
         overlap = np.zeros(len(areas)) if around.overlap is None else around.overlap
         beyond = np.maximum(overlap - meant(pair, largest) / sizes, 0.0)
-        hidden = beyond / np.maximum(pressed_in, SHARE * (around.bends or 0.0) / sizes)
+        gives = max(around.bends or 0.0, 0.0 if around.edge is None else around.edge.give)
+        hidden = beyond / np.maximum(pressed_in, SHARE * gives / sizes)
         loaded = np.nanmax(np.abs(nodal) if pair.contact.kind == KINDS[2] else nodal, axis=1) > CLOSED * largest
         cover = pair.coupling.covered / areas
         pressing = pressed_in * np.pi / pair.compliance if pair.compliance > 0.0 else 0.0
@@ -217,13 +224,16 @@ def _pressure(case: _Case) -> Iterator[Check]:
         pressure=matters)  # fmt: skip
     counts = largest > LESSER * case.around.beside
     facets = resolution(pair, average, support, largest)
-    yield _resolved(
-        case, facets if counts else 0.0, resolution_between_ends(pair, average, support, largest) if counts else 0.0
-    )
+    edge = case.around.edge if counts and facets > RESOLUTION else None
+    if edge is not None:
+        yield from _at_edge(case, edge)
+    else:
+        between = resolution_between_ends(pair, average, support, largest) if counts else 0.0
+        yield _resolved(case, facets if counts else 0.0, between)
     yield _of_largest(case, seen, counts)
     estimate = pressure_error(pair, pressure, support, largest, case.around.stress, seen.carried, average)
     off = estimate * largest / matters
-    unknown = NARROW if facets > RESOLUTION else UNSEEN if np.isnan(off) else ""
+    unknown = EDGE if edge is not None else NARROW if facets > RESOLUTION else UNSEEN if np.isnan(off) else ""
     edges = edge_load(pair, case.values, case.nodal) if counts else 0.0
     yield Check(pair.contact.name, "pressure error", np.nan if unknown else off, ERROR,
         "estimated local error of the reported pressure inside the contact, over the largest pressure",
@@ -233,10 +243,20 @@ def _pressure(case: _Case) -> Iterator[Check]:
         unknown="the target has points without a normal" if np.isnan(edges) else "")  # fmt: skip
 
 
+def _at_edge(case: _Case, edge: SharpEdge) -> Iterator[Check]:
+    """A sharp edge touches along a line narrower than any facet: what it presses there with is a force."""
+    of = words(case.pair.contact.target if edge.of_target else case.pair.contact.contactor)
+    place = ", ".join(f"{value:.4g}" for value in edge.place)
+    yield Check(case.pair.contact.name, "resolution", np.nan, RESOLUTION, FACETS, last=True, unknown=EDGE)
+    yield Check(case.pair.contact.name, "sharp edge", edge.off, OFF,
+        f"a sharp edge of {of} presses near ({place}): share by which its force, or how far it moves, may be off; the "
+        "pressure there is that of the mesh", last=True, notice=-1.0)  # fmt: skip
+
+
 def _resolved(case: _Case, facets: float, between_ends: float) -> Check:
     """Thin parts touch along lines: what they press there with is a force, which no facets show as a pressure. Neither do a
     few facets between a body's edges, though its force may be right."""
-    meaning = "one over the number of facets from the edge of contact to its middle, at the end"
+    meaning = FACETS
     if case.around.bends is None and facets <= RESOLUTION and between_ends > BETWEEN_ENDS:
         return Check(case.pair.contact.name, "resolution", between_ends, 1.0,
             f"{meaning}: between the ends of a body, where pressure rises, its course is unknown", last=True,

@@ -6,13 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.contact.geometry import nodal_normals, split_at_creases
+from abut.contact.pressing_edges import ACROSS, TURNED, leaning, outward
 from abut.contact.rim import rim
 from abut.errors import InputError
 from abut.mesh.surface import Surface
 from abut.problem.pair import Pair
-
-ACROSS = np.cos(np.deg2rad(45.0))  # of the angle between an edge's outward direction and where the other side leans to
-TURNED = 1e-6  # sine of an angle from which on surfaces lean
 
 Array = NDArray[np.float64]
 
@@ -33,40 +31,35 @@ def edge_load(pair: Pair, values: Array, nodal: Array) -> float:
     if not force.any():
         return 0.0
     share = force[at.facet] / force.sum() * pressure / np.maximum(of_facet[at.facet], 1e-300)
-    own = _normals(pair.contactor, at.facet, at.contactor_shapes)
+    own = normals_at(nodal_normals(pair.contactor), at.facet, at.contactor_shapes)
     try:
-        other = _normals(pair.target, at.target_facet, at.target_shapes)
+        other = normals_at(nodal_normals(pair.target), at.target_facet, at.target_shapes)
         theirs = _edge_presses(pair.target, at.target_facet, other, own)
     except InputError:
         return float("nan")
     edge = _edge_presses(pair.contactor, at.facet, own, other) & ~theirs
-    sine = np.linalg.norm(_leaning(own, other), axis=1)
+    sine = np.linalg.norm(leaning(-at.normal, other), axis=1)
     return float((share * sine)[edge].sum())
 
 
-def _normals(surface: Surface, facets: NDArray[np.int32], shapes: Array) -> Array:
-    """Unit normals (n, dim) of a surface's facets at points given by their shape functions (n, 9)."""
-    normal = np.einsum("sk,ska->sa", shapes, nodal_normals(surface)[facets])
+def normals_at(normals: Array, facets: NDArray[np.int32], shapes: Array) -> Array:
+    """Unit normals (n, dim), of those at facets' nodes (n_facets, 9, dim), at points given by shape functions (n, 9)."""
+    normal = np.einsum("sk,ska->sa", shapes, normals[facets])
     return np.asarray(normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300))
-
-
-def _leaning(own: Array, other: Array) -> Array:
-    """The part of the opposite of ``other`` that is square to ``own``, (n, dim): as long as the sine of their angle."""
-    return np.asarray((own * other).sum(axis=1, keepdims=True) * own - other)
 
 
 def _edge_presses(surface: Surface, facets: NDArray[np.int32], own: Array, other: Array) -> NDArray[np.bool_]:
     """Where (n,) the other side, opposite facets (n,) of a surface, leans out over a crease or an end of these."""
     ends = rim(split_at_creases(surface)[0])
-    out = ends.out / np.maximum(np.linalg.norm(ends.out, axis=1, keepdims=True), 1e-300)
+    out = outward(ends)
     order = np.argsort(ends.facet, kind="stable")
     first = np.searchsorted(ends.facet[order], facets)
     count = np.searchsorted(ends.facet[order], facets, side="right") - first
-    leaning = _leaning(own, other)
-    size = np.linalg.norm(leaning, axis=1)
+    lean = leaning(own, other)
+    size = np.linalg.norm(lean, axis=1)
     presses = np.zeros(len(facets), dtype=bool)
     for k in range(int(count.max(initial=0))):
         has = k < count
-        towards = (leaning[has] * out[order[first[has] + k]]).sum(axis=1)
+        towards = (lean[has] * out[order[first[has] + k]]).sum(axis=1)
         presses[has] |= towards > ACROSS * size[has]
     return presses & (size > TURNED)

@@ -25,6 +25,7 @@ from abut.analysis.penetrations import penetration_results
 from abut.analysis.preloads import preload_results
 from abut.analysis.reactions import reactions
 from abut.analysis.response import beyond_rounding, grows
+from abut.analysis.sharp_edge import Forces, sharp_edge
 from abut.analysis.stress_error import stress_error
 from abut.analysis.surface_stress import cells_around, loaded_points, normal_stress
 from abut.analysis.thin_give import bends
@@ -315,9 +316,9 @@ def _contacts(
     references = _largest_pressures(len(balance.pairs), before)
     largest = [pair.space.transfer @ p[pair.normal] for pair, p in zip(balance.pairs, end.pressures) if not pair.tied]
     beside = max([float(np.abs(p).max(initial=0.0)) for p in largest] + references + [0.0])
-    around = []
-    loaded = loaded_points(model)
+    around, loaded = [], loaded_points(model)
     others = covered_elsewhere(balance.pairs, end.pressures)
+    forces = Forces(end.internal, np.abs(end.loads) + np.abs(_pressed(end)))
     for pair, pressed, reference, elsewhere, support in zip(
         balance.pairs, end.pressures, references, others, end.supports
     ):
@@ -331,9 +332,9 @@ def _contacts(
         along = None if model.finite or pair.tied else slid(pair, end.nodal, held=gives == 0.0)
         sides = model.measured(pair.contact) if pair.contact in model.contacts and not pair.tied else None
         beside_it = Surroundings(reference, beside, overlap, free, elsewhere, support, cells, gives=gives, slid=along)
-        yielding = bends(model, pair, pressed, end.nodal, end.internal)
         note = left_out(model, pair.contact) if pair.contact in model.contacts else ""
-        around.append(replace(beside_it, sides=sides, bends=yielding, at_sides=note))
+        beside_it = replace(beside_it, bends=bends(model, pair, pressed, end.nodal, end.internal), at_sides=note)
+        around.append(replace(beside_it, sides=sides, edge=sharp_edge(model.mesh, pair, pressed, end.nodal, forces)))
     residual = attempt.iterations[-1].contact_residual
     found = zip(
         balance.pairs, end.pressures, balance.split(balance.gap), balance.split(end.state.status),

@@ -8,13 +8,16 @@ from numpy.typing import NDArray
 
 from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.coupling import Couple, CouplingOptions, IntegrationPoints
-from abut.contact.geometry import CREASE, by_kind, corner_functions, split_at_creases
+from abut.contact.coupling import couple as couple_here
+from abut.contact.geometry import CREASE, by_kind, corner_functions, nodal_normals, split_at_creases, turning_within
+from abut.contact.pressing_edges import TURNED, Opposite, at_edges, pressing
 from abut.dofs import component_of, n_places, place_of
 from abut.mesh.surface import Surface
 
 NO_TILT = 1e-9  # between the normals of the two sides: rounding
 POINTS = 3  # for each direction of a segment, so that the mean on curved facets is the same however segments are cut
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 
 
 def common_normals(
@@ -22,20 +25,45 @@ def common_normals(
 ) -> Array:
     """Unit normals at the contactor's facets' nodes, out of it, (n_facets, 9, dim), zero where padded: its ``outward``
     turned by ``share`` of the way to the target opposite, theory (R2); as they are where there is none, or it leans by
-    more than at a crease. outward, other: of contactor and target, as from ``nodal_normals``; reach: length, as for
-    ``couple``."""
-    if share == 0.0 or _facing_planes(contactor, outward, target, other):
+    more than at a crease. Where a sharp edge presses, those of the face that it presses on, theory (R2). outward, other: of
+    contactor and target, as from ``nodal_normals``; reach: length, as for ``couple``."""
+    if _facing_planes(contactor, outward, target, other):
         return outward
-    at = couple(
-        contactor, target, 1, CouplingOptions(points=POINTS, reach=reach, keep_points=True, normals=outward)
-    ).points
+    options = CouplingOptions(points=POINTS, reach=reach, keep_points=True, normals=outward)
+    if share == 0.0:  # edges alone could turn
+        at = couple_here(contactor, target, 1, options, at_edges(contactor)).points
+    else:
+        at = couple(contactor, target, 1, options).points
     if at is None or not len(at.weight):
         return outward
-    tilt = _opposite(target, other, at) - at.normal
-    tilt[np.einsum("na,na->n", at.normal, at.normal + tilt) < CREASE] = 0.0
+    opposite = _opposite(target, other, at)
+    tilt = opposite - at.normal
+    mine, theirs = _edges(contactor, outward, target, other, at, opposite)
+    edge = mine & ~theirs
+    part = np.where(edge, 1.0, np.where(theirs & ~mine, 0.0, share))
+    part[~edge & (np.einsum("na,na->n", at.normal, opposite) < CREASE)] = 0.0
+    tilt *= part[:, None]
     if np.abs(tilt).max(initial=0.0) <= NO_TILT:
         return outward
-    return _turned(contactor, outward, share * _at_nodes(contactor, at, tilt))
+    return _turned(contactor, outward, _at_nodes(contactor, at, tilt))
+
+
+def edges_press(contactor: Surface, target: Surface, at: IntegrationPoints, least: float) -> tuple[Flags, Flags]:
+    """Of contactor and target, whether a sharp edge of its facet presses there, theory (R2), at each integration point (n,).
+    least: sine of the angle between the sides. Raises InputError for a facet without a normal."""
+    outward, other = nodal_normals(contactor), nodal_normals(target)
+    return _edges(contactor, outward, target, other, at, _opposite(target, other, at), least)
+
+
+def _edges(
+    contactor: Surface, outward: Array, target: Surface, other: Array, at: IntegrationPoints, opposite: Array,
+    least: float = TURNED,
+) -> tuple[Flags, Flags]:  # fmt: skip
+    """The same with normals at hand. opposite: (n, dim) the target's at the points."""
+    turns = turning_within(contactor, outward)[at.facet], turning_within(target, other)[at.target_facet]
+    mine = pressing(contactor, outward, Opposite(at.facet, opposite, turns[1], at.weight), least)[at.facet]
+    seen = Opposite(at.target_facet, -at.normal, turns[0], at.weight)
+    return mine, pressing(target, other, seen, least)[at.target_facet]
 
 
 def _facing_planes(contactor: Surface, outward: Array, target: Surface, other: Array) -> bool:

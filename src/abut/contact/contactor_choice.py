@@ -7,7 +7,10 @@ what the user has named.
    target's corners one by one (``abut.benchmarks.contrast``).
 3. But not a side that is mostly bare while the other is covered: its pressure would stand on facets of which a small part
    only lies opposite anything.
-4. Among equals the coarser side: the other one follows what its pressure can show, where a finer contactor would show the
+4. Before these, at small displacements, unless one is softer by far, the side of which a sharp edge presses on a face of the
+   other one, as a knife does: a node lies at the edge, and the gap there is that of the edge. A face averages it over facets
+   on which it opens.
+5. Among equals the coarser side: the other one follows what its pressure can show, where a finer contactor would show the
    corners of its target. Where sizes hardly differ, the one that is less bare.
 
 ``bench/sides`` has the study that this comes from, docs/verification/pressure.md its numbers.
@@ -24,6 +27,7 @@ ALIKE = 1.1  # ratio of moduli up to which neither side is the softer one
 BARE = 0.55  # share of a side's facets that lies opposite: with less a pressure stands on facets that are mostly bare
 BARER = 0.1  # difference of such shares that is worth a choice
 FINER = 1.25  # ratio of facet sizes from which on one side counts as finer than the other
+LEANS = 0.01  # sine between the sides at an edge: about what a facet gives way at strains of metals, over its size
 MARGIN = 1.1  # by which shares must pass their limits for the choice to be clear: they are measured
 SAME_SIZE = 1e-3  # relative difference of sizes that is none
 STIFFER = 3.0  # ratio of moduli from which on a contactor that is a little finer may show the facets of its target
@@ -35,6 +39,7 @@ REASONS = {
     "rigid": "the other side is rigid, or held",
     "normals": "a facet of the other side has no normal at one of its points",
     "softer": "softer",
+    "edge": "its edge presses on a face of the other side",
     "covered": "the facets of the other side reach far beyond this one",
     "coarser": "coarser",
     "alike": "first of two alike",
@@ -47,13 +52,15 @@ class Side:
 
     modulus: E / (1 - nu^2), infinite for a rigid side; size: median of the facets where contact begins, a length; covered:
     share of the area of all of them that lies opposite the other side; normals: whether each facet has one everywhere;
-    tetrahedra: whether its cells are such of first order, which give way at their corners alone."""
+    tetrahedra: whether its cells are such of first order, which give way at their corners alone; edge: whether contact
+    begins where a sharp edge of it presses on a face of the other side."""
 
     modulus: float
     size: float
     covered: float
     normals: bool = True
     tetrahedra: bool = False
+    edge: bool = False
 
 
 @dataclass(frozen=True)
@@ -101,6 +108,9 @@ def choose(one: Side, other: Side) -> Choice:
         return Choice(soft, "rigid", True)
     if one.normals != other.normals:
         return Choice(int(other.normals), "normals", True)
+    presses = [number for number in (0, 1) if sides[number].edge and not sides[1 - number].edge]
+    if presses and stiff <= STIFFER * sides[soft].modulus:
+        return Choice(presses[0], "edge", True)
     if stiff > ALIKE * sides[soft].modulus and not _bare(sides[soft], sides[1 - soft]):
         return Choice(soft, "softer", True)
     for number in (0, 1):

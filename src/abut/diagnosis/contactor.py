@@ -13,6 +13,7 @@ from abut.model import Contact, Model
 CURES = {
     "softer": "swap contactor and target: the softer side should carry the pressure",
     "covered": "swap contactor and target, or end the facets of the contactor where the target ends",
+    "edge": "swap contactor and target: the side whose edge presses should carry the pressure",
     "coarser": "swap contactor and target: the coarser side should carry the pressure",
 }
 
@@ -53,5 +54,6 @@ def _against(choice: Choice, side: Side, other: Side) -> str:
         "softer": "is the stiffer side",
         "covered": f"has only {side.covered:.0%} of the area of its facets opposite the target, {other.covered:.0%} the "
         "other way round",
+        "edge": "is a face on which an edge of the target presses",
         "coarser": f"is {other.size / side.size:.2g} times finer than its target",
     }[choice.rule]

@@ -23,6 +23,7 @@ from abut.solution.stress_error import ContactStressError
 SECOND = " (second pass)"
 EITHER = Choice(1, "alike", False)  # whatever else speaks for the present contactor
 LOADED = 1e-3  # pressure over the largest
+OF_NARROW = {"overlap", "oscillation", "largest pressure"}  # lines that the mesh does not mend at a sharp edge
 UNSETTLED = {"complementarity", "friction cone", "slip direction", "sticking", "friction work"}
 SINGULAR_HINT = "check the units of Young's moduli, loads and mesh, and constrain every body by supports of its own"
 
@@ -51,7 +52,9 @@ def cure(check: Check, solution: Solution) -> str:
     contact = next(c for c in solution.model.contacts if c.name == name)
     result = next(c for c in solution.contacts if c.name == check.contact)
     choice = EITHER if check.name == "contactor's edges" else None
-    return OF_CONTACT[check.name](contact, result, swap(solution.model, contact, choice))
+    at_edge = any(one.name == "sharp edge" and one.contact == check.contact for one in solution.certificate)
+    line = "sharp edge" if at_edge and check.name in OF_NARROW else check.name
+    return OF_CONTACT[line](contact, result, swap(solution.model, contact, choice))
 
 
 def cures(solution: Solution) -> tuple[tuple[Check, str], ...]:
@@ -186,6 +189,14 @@ def _resolution(contact: Contact, result: ContactResult, sides: str) -> str:
     return text
 
 
+def _sharp_edge(contact: Contact, result: ContactResult, sides: str) -> str:
+    swap = f"{sides}: the side whose edge presses should carry the pressure; or " if sides else ""
+    return (
+        f"{swap}round the edge over three facets of those that touch; else read forces, and what is some facets off: finer "
+        "facets make its pressure larger, without limit"
+    )
+
+
 def _pressure_error(contact: Contact, result: ContactResult, sides: str) -> str:
     loaded = np.nanmax(result.pressure, axis=1) > LOADED * result.max_pressure
     if not loaded.any():  # not any more, at the end of the run
@@ -280,6 +291,7 @@ OF_CONTACT: dict[str, Callable[[Contact, ContactResult, str], str]] = {
     "complementarity": _complementarity,
     "oscillation": _oscillation,
     "resolution": _resolution,
+    "sharp edge": _sharp_edge,
     "pressure error": _pressure_error,
     "largest pressure": _largest,
     "contactor's edges": _edges,

@@ -49,7 +49,7 @@ from abut.model.probe import Probe, check_probes
 from abut.model.removal import Away, Removal, check_removals, loads_while_there, opened
 from abut.model.response import Wanted, check_responses
 from abut.model.rotation import Rotation, check_rotations
-from abut.model.side_choice import SAME, decided, held_points, measured
+from abut.model.side_choice import SAME, decided, held_points, measured, square_at_edges
 from abut.model.solid import Solid
 from abut.model.solve_options import SolveOptions
 from abut.model.spring import Spring, check_springs
@@ -285,7 +285,10 @@ class Model:
 
     @cached_property
     def _measured(self) -> dict[str, tuple[Side, Side]]:
-        return {c.name: measured(self.mesh, self.materials, self._held, self.sides(c)) for c in self.contacts}
+        return {c.name: self._measure(c, self.sides(c)) for c in self.contacts}
+
+    def _measure(self, contact: Contact, sides: Sides) -> tuple[Side, Side]:
+        return measured(self.mesh, self.materials, self._held, sides, square_at_edges(contact, self.finite))
 
     @cached_property
     def _held(self) -> NDArray[np.bool_]:
@@ -305,12 +308,10 @@ class Model:
 
     def _decided(self, contact: Contact) -> Contact:
         """With contactor and target, where the user leaves them to abut."""
-        if not contact.first:
-            return contact
-        if contact.first == contact.second:
-            return contact.with_choice(0, SAME)
+        if not contact.first or contact.first == contact.second:
+            return contact.with_choice(0, SAME) if contact.first else contact
         surfaces = self._surfaces(contact, contact.first, contact.second)
-        return decided(contact, measured(self.mesh, self.materials, self._held, surfaces), self.finite)
+        return decided(contact, self._measure(contact, surfaces), self.finite)
 
     def temperatures(self, time: float) -> dict[str, float]:
         """Change of temperature of each solid body as a whole, which follows the ramp (degrees)."""

@@ -8,8 +8,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.contact.contactor_choice import NEAR, Side, choose, side, where_contact_begins
-from abut.contact.coupling import CouplingOptions, couple, default_reach
+from abut.contact.common_normals import edges_press
+from abut.contact.contactor_choice import LEANS, NEAR, Side, choose, side, where_contact_begins
+from abut.contact.coupling import CouplingOptions, IntegrationPoints, couple, default_reach
 from abut.contact.geometry import facet_sizes, full_moments, straight, without_normal
 from abut.contact.sides import Sides, words
 from abut.errors import InputError
@@ -18,7 +19,7 @@ from abut.materials.softest import contact_modulus, softest
 from abut.mesh.mesh import Mesh
 from abut.mesh.surface import Surface
 from abut.model.conditions import COMPONENTS, Support
-from abut.model.contact import Contact
+from abut.model.contact import METHODS, Contact
 
 SAME = "a surface on itself"
 OF_FRICTION = "named first: its friction varies with position, and goes with its points"
@@ -40,18 +41,25 @@ def decided(contact: Contact, measures: tuple[Side, Side], finite: bool) -> Cont
     return contact.with_choice(choice.contactor, choice.why(*measures))
 
 
+def square_at_edges(contact: Contact, finite: bool) -> bool:
+    """Whether sharp edges of the contactor push square to the face that they press on, theory (R2). finite: whether
+    displacements may be large."""
+    return not finite and contact.kind != "tied" and contact.method == METHODS[0]
+
+
 def measured(
-    mesh: Mesh, materials: Mapping[str, Material], held: NDArray[np.bool_], surfaces: Sides
+    mesh: Mesh, materials: Mapping[str, Material], held: NDArray[np.bool_], surfaces: Sides, edges: bool
 ) -> tuple[Side, Side]:
     """Two sides as the choice sees them: facets within reach of each other, or, where none are so near, of the contact's own
-    reach. materials: by body, those without one are rigid; held: (n_points,) as from ``held_points``."""
+    reach. materials: by body, those without one are rigid; held: (n_points,) as from ``held_points``;
+    edges: whether sharp ones count."""
     flat = [straight(replace(surface, axisymmetric=False)) for surface in surfaces]
     sizes = [facet_sizes(surface) for surface in flat]
     options = CouplingOptions(points=1, reach=default_reach(*flat), keep_points=True)
     at = couple(flat[0], flat[1], 0, options).points
     if at is None or not len(at.gap):
         facing, opposite = [np.arange(len(surface)) for surface in flat], np.inf
-        first = facing
+        first, sharp = facing, (False, False)
     else:
         both = sizes[0][at.facet] + sizes[1][at.target_facet]
         near = np.abs(at.gap) <= NEAR * both
@@ -60,15 +68,29 @@ def measured(
         opposite = float(at.weight[near].sum())
         begins = np.flatnonzero(near)[where_contact_begins(at.gap[near], both[near])]
         first = [np.unique(of[begins]) for of in (at.facet, at.target_facet)]
+        sharp = _edges(flat[0], flat[1], at, near) if edges else (False, False)
     moduli = [_modulus(mesh, materials, held, surface, facets) for surface, facets in zip(surfaces, facing)]
     one, other = (
         replace(
             side(size[f], full_moments(flat_side, 0)[around, 0], opposite, modulus, not without_normal(surface).any()),
             tetrahedra=_tetrahedra(mesh, surface, around),
+            edge=edge,
         )
-        for surface, flat_side, size, f, around, modulus in zip(surfaces, flat, sizes, first, facing, moduli)
+        for surface, flat_side, size, f, around, modulus, edge in zip(
+            surfaces, flat, sizes, first, facing, moduli, sharp
+        )
     )
     return one, other
+
+
+def _edges(one: Surface, other: Surface, at: IntegrationPoints, near: NDArray[np.bool_]) -> tuple[bool, bool]:
+    """Of each side, whether an edge of it presses on the other one's face where these are nearest."""
+    nearest = int(np.argmin(np.where(near, at.gap, np.inf)))
+    try:
+        mine, theirs = (bool(flags[nearest]) for flags in edges_press(one, other, at, LEANS))
+    except InputError:  # a facet without a normal
+        return False, False
+    return mine and not theirs, theirs and not mine
 
 
 def _tetrahedra(mesh: Mesh, surface: Surface, facets: NDArray[np.int64]) -> bool:

@@ -61,8 +61,6 @@ def _between(
     """The same of surfaces as they are, contactor and target, each with the points of it that supports hold."""
     (contactor, held), (target, of_target) = mine, opposite
     outward, mirrors = _upright(contactor, held)
-    if share == 0.0:
-        return outward
     try:
         other, _ = _upright(target, of_target)
     except InputError:  # a facet without a normal at a node: the contactor may still see the others
