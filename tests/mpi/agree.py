@@ -233,6 +233,13 @@ def softening() -> Any:
     return softening_rubber.model(softening_rubber.SofteningRubber(1.0, 20.0))
 
 
+def fields(name: str) -> Any:
+    """With fields beside displacements."""
+    from field_models import MODELS
+
+    return MODELS[name]()
+
+
 CASES: dict[str, Callable[[], Any]] = {
     "hex8": lambda: patch("hex8", "hex8"),
     "tet10-hex20": lambda: patch("tet10", "hex20"),
@@ -272,6 +279,10 @@ CASES: dict[str, Callable[[], Any]] = {
     "volumes-rubber": rubber_volumes,
     "pin-lug": lambda: example("pin-lug/job.toml"),
     **{
+        name: partial(fields, name)
+        for name in ("heated", "heated-moving", "bent", "hinged-lever", "slider-crank", "hinged-beams")
+    },
+    **{
         name: partial(finite, name)
         for name in ("beam", "folds", "jaws", "slid", "linear", "cushion", "punch", "pad", "turned")
     },
@@ -279,8 +290,8 @@ CASES: dict[str, Callable[[], Any]] = {
 
 
 def compare(name: str, team: Team) -> dict[str, Any]:
-    """Largest differences of displacement, pressure, stress and reactions, with friction of traction and slip too, each over
-    the largest value."""
+    """Largest differences of displacement, pressure, stress, reactions and what is remembered, with friction of traction and
+    slip too, each over the largest value."""
     import numpy as np
 
     import abut
@@ -303,10 +314,12 @@ def compare(name: str, team: Team) -> dict[str, Any]:
         pairs = {
             "displacement": (p.displacement, q.displacement),
             "stress": (p.stress, q.stress),
-            "reaction": ([p.reactions[s] for s in on], [q.reactions[s] for s in on]),
+            "reaction": ([p.reactions[s] for s in on] or [0.0], [q.reactions[s] for s in on] or [0.0]),
         }
         for what, (a, b) in pairs.items():
             worst[what] = max(worst[what], far(a, b))
+        for field, values in p.remembered.items():
+            worst["remembered"] = max(worst.get("remembered", 0.0), far(values, q.remembered[field]))
         for c, d in zip(p.contacts, q.contacts, strict=True):
             worst["pressure"] = max(worst["pressure"], far(c.pressure, d.pressure))
             assert [check.passed for check in c.checks] == [check.passed for check in d.checks]

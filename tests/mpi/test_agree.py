@@ -27,7 +27,7 @@ def compared(mpirun: Run, n: int, cases: list[str], *options: str, timeout: floa
     for row in found.values():
         assert row["converged"]
         assert max(row[what] for what in ("displacement", "pressure", "stress", "reaction")) < AGREE, row
-        assert max(row.get(what, 0.0) for what in ("traction", "slip")) < AGREE, row
+        assert max(row.get(what, 0.0) for what in ("traction", "slip", "remembered")) < AGREE, row
         assert len(row["cells"]) == n
     return found
 
@@ -77,6 +77,17 @@ def test_terms_with_rates(mpirun: Run, n: int) -> None:
     for row in compared(mpirun, n, ["swinging", "swinging-finite"]).values():
         assert "direct" in row["solver"]
         assert row["solutions"] == row["alone"]
+
+
+@pytest.mark.parametrize("n", [1, 2, 3])
+def test_fields_beside_displacements(mpirun: Run, n: int) -> None:
+    """Temperatures at nodes, coupled both ways, with contact; internal unknowns of cells; forces of connectors
+    at large turns: iterations as on one process."""
+    cases = ["heated", "heated-moving", "bent", "hinged-lever", "slider-crank", "hinged-beams"]
+    for case, row in compared(mpirun, n, cases).items():
+        assert "direct" in row["solver"]
+        assert row["solutions"] == row["alone"]
+        assert ("remembered" in row) == case.startswith("heated")
 
 
 @pytest.mark.parametrize("n", [1, 2])

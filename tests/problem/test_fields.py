@@ -10,12 +10,10 @@ import numpy as np
 import pytest
 
 import abut
-from abut.analysis.linear_solvers import assembled_bodies
 from abut.errors import InputError, SingularModelError
 from abut.mesh.make import box, join, rectangle
 from abut.mesh.mesh import Mesh
 from abut.model.physics import TEMPERATURE
-from abut.problem.clock import Clock
 from models.conduction import Conduction, Heater
 from models.inertia import Inertia
 
@@ -131,5 +129,3 @@ def test_what_cannot_be_is_said() -> None:
         replace(heated(mesh, BETWEEN), physics=[BETWEEN, BETWEEN])
     with pytest.raises(InputError, match=r"physics\[1\]: a term cannot be named 'inertia'"):
         abut.solve(replace(heated(mesh, BETWEEN), physics=[Inertia("bar.right", 1.0)] * 2))
-    with pytest.raises(InputError, match=r"fields beside displacements \('temperature'\) are solved on one process"):
-        assembled_bodies(heated(mesh, BETWEEN), print, print, Clock(), object())  # type: ignore[arg-type]

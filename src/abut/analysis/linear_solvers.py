@@ -23,12 +23,8 @@ if TYPE_CHECKING:
 def assembled_bodies(
     model: Model, observe: Observer, note: Callable[[str], None], clock: Clock, team: Team | None
 ) -> Backend:
-    """The stiffness of a model's bodies, assembled here or by a team. Raises InputError for fields that a team does not
-    know."""
-    if team is not None and (more := [field.name for field in model.dofs.fields[1:]]):
-        names = ", ".join(f"'{name}'" for name in more)
-        what = "physics" if model.physics else "connectors"
-        raise InputError(f"{what}: fields beside displacements ({names}) are solved on one process; start one only")
+    """The stiffness of a model's bodies, assembled here or by a team. Raises InputError for bodies that go and come, which a
+    team does not know."""
     if team is not None and model.removals:
         raise InputError("removals: bodies that go and come are solved on one process; start one only")
     if team is None:

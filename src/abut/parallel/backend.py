@@ -63,7 +63,9 @@ class DistributedBodies:
     def assembled(self) -> DistributedBodies:
         """Have every process assemble its part."""
         model = self.model
-        varying = model.holds or model.springs or model.penetrations or model.physics  # a stiffness linearised anew
+        varying = (
+            model.holds or model.springs or model.penetrations or model.physics or model.connectors
+        )  # a stiffness linearised anew
         again = bool(model.finite or varying)  # iterations ask for it anew
         arguments = [(replace(self.cellwise, mesh=piece.mesh), again) for piece in self.pieces]
         self.team.each(part.assemble, per_rank=arguments)
@@ -118,7 +120,9 @@ class DistributedBodies:
         if self.told:
             places = self.told[0][1]
         else:
-            places = layout(constraints.free, self.points, dim, self.team.size, constraints.coupled)
+            others = constraints.others
+            more = None if others is None else others.at_places({"nodes": self.points, "cells": self.owner})
+            places = layout(constraints.free, self.points, dim, self.team.size, constraints.coupled, more)
         arguments = []
         for piece in self.pieces:
             rows = constraints.free[dofs_at(piece.points, dim).ravel()].tocsc()

@@ -164,9 +164,10 @@ class Direct:
         both = zip(matrix.layout.shares(rhs), matrix.beside_by_process())
         arguments = [(share, more, None if rank else beside) for rank, ((share,), more) in enumerate(both)]
         answers = team.each(factorise, matrix.kept.number, n, symmetric, per_rank=arguments)
-        if not (answers[0].error < SINGULAR or answers[0].memory):  # perhaps for an analysis made for other values
+        if not (answers[0].error < SINGULAR or answers[0].memory):  # perhaps for an analysis made for other values;
+            # and unlike LU, symmetric factors of several processes do not pivot beyond what has a diagonal of its own
             team.each(drop_factors)
-            answers = team.each(factorise, matrix.kept.number, n, symmetric, per_rank=arguments)
+            answers = team.each(factorise, matrix.kept.number, n, False, per_rank=arguments)
         return checked(answers, matrix.layout)
 
 

@@ -142,9 +142,15 @@ def pieces(mesh: Mesh, owner: NDArray[np.int64], size: int, points: NDArray[np.i
     return result
 
 
-def layout(free: Sparse, owner: NDArray[np.int64], dim: int, size: int, coupled: bool) -> Layout:
+def layout(
+    free: Sparse, owner: NDArray[np.int64], dim: int, size: int, coupled: bool, more: NDArray[np.int64] | None = None
+) -> Layout:
     """Places for the columns of ``free`` (dim n_points, n_free), each with the process (``owner``) of its point. Points are
-    filled up to ``dim`` places, unless columns are ``coupled``: those go with their first point, one place each."""
+    filled up to ``dim`` places, unless columns are ``coupled``: those go with their first point, one place each.
+
+    more: processes of the last columns, which move no point; one place each for all columns then."""
+    if more is not None:
+        coupled, free = True, free.tocsc()[:, : free.shape[1] - len(more)]
     columns = free.tocsc()
     columns.sort_indices()
     point = place_of(columns.indices[columns.indptr[:-1]].astype(np.int64), dim)
@@ -152,6 +158,8 @@ def layout(free: Sparse, owner: NDArray[np.int64], dim: int, size: int, coupled:
     slot, blocks = (np.arange(len(point)), point) if coupled else slots(free, dim)
     process = np.empty(len(blocks), dtype=np.int64)
     process[slot // block] = owner[point]
+    if more is not None:
+        slot, process = np.arange(len(point) + len(more)), np.concatenate([process, more])
     place = np.empty_like(process)
     place[np.argsort(process, kind="stable")] = np.arange(len(process))
     starts = block * np.concatenate([[0], np.cumsum(np.bincount(process, minlength=size))]).astype(np.int64)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -40,6 +41,18 @@ class OtherFields:
             result[columns] = part.max(initial=0.0)
         return result
 
+    def at_places(self, by: Mapping[str, Array]) -> Array:
+        """What is given ``by`` place, for "nodes" and "cells" (places,), at every unknown that is no displacement, in order;
+        zero for those of other places."""
+        result = np.zeros(self.free.shape[1], dtype=np.int64)
+        first = self.dofs.range_of(DISPLACEMENT).stop
+        for field in self.dofs.fields[1:]:
+            rows = self.dofs.of(field.name) - first
+            given = by.get(field.at, np.zeros(field.places, dtype=np.int64))
+            here = self.free[rows.ravel()].tocoo()
+            result[here.col] = np.repeat(given, field.components)[here.row]
+        return result[result.size - self.free.nnz :]
+
     def _columns(self, name: str) -> NDArray[np.int64]:
         """Unknowns of a field."""
         at, first = self.dofs.range_of(name), self.dofs.range_of(DISPLACEMENT).stop
@@ -53,8 +66,7 @@ def other_fields(model: Model, n_moving: int) -> OtherFields | None:
     if not model.physics and len(dofs.fields) == 1:
         return None
     first = dofs.range_of(DISPLACEMENT).stop
-    by_factors = ("auto", "direct") if dofs.size > first else ("auto", "direct", "petsc")
-    if model.solve.linear not in by_factors:
+    if model.solve.linear not in ("auto", "direct", "petsc"):
         what = "physics needs" if model.physics else "connectors need"
         raise InputError(f'solve.linear: "{model.solve.linear}" knows displacements alone; {what} "direct"')
     prescribed = np.zeros((dofs.size - first, len(model.histories)))
