@@ -16,7 +16,6 @@ from abut.analysis.energy import Acting, energy, pressing, tractions
 from abut.analysis.faceting import free_axes
 from abut.analysis.finite_energy import FiniteActing, finite_energy
 from abut.analysis.flow import flow, remembered
-from abut.analysis.initial_stress import initial_stress
 from abut.analysis.interpolation_error import Mended
 from abut.analysis.known_stress import known_stress
 from abut.analysis.moved import slid, turned
@@ -163,11 +162,7 @@ def step_result(
         energy=work if strained else None,
         stress_error=stress_error(solids, end.nodal, own, values, contacts) if strained else None,
         volume_change=volume_change(solids, end.nodal, own, change) if shown is None and strained else None,
-        remembered={
-            **remembered(solids, end.motion.history),
-            **initial_stress(solids, before),
-            **node_fields(problem, end.motion, state),
-        },
+        remembered={**remembered(solids, end.motion.history, before), **node_fields(problem, end.motion, state)},
         penetrations=penetration_results(problem, state, end.displacement),
         flow=end.flow,
         preloads=_preloads(end),
