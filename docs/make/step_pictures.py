@@ -122,7 +122,7 @@ def initial_stress() -> None:
     )
     axes.set_xlabel("stress along the strip")
     axes.set_ylabel("height")
-    axes.legend(frameon=False, fontsize=8)
+    axes.legend(frameon=False, fontsize=8, loc="lower right")
     figure.savefig(DOCS / "pictures" / "initial-stress.png", dpi=150)
 
 

@@ -83,8 +83,6 @@ class Connector:
     limits : (float, float), optional
         Between which the free motion stays, the lower one first [radian, or length]; a stop there pushes, and does not pull.
         Either may be infinite.
-    limits2 : (float, float), optional
-        The same of the second free motion: the turn of "cylindrical", ``turn2`` of "universal".
     motion : float, optional
         Prescribed free motion [radian, or length].
     load : float, optional
@@ -93,6 +91,8 @@ class Connector:
         Of a spring along the free motion, without force at the outset [force length / radian, or force/length].
     amplitude : Amplitude, optional
         Of motion or load over time.
+    limits2 : (float, float), optional
+        As limits, of the second free motion: the turn of "cylindrical", ``turn2`` of "universal".
 
     Raises
     ------
