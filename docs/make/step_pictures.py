@@ -1,5 +1,5 @@
-"""Pictures of docs/job.md: a joint that fluid enters, a body that goes and comes back, loads in local axes (needs
-matplotlib)."""
+"""Pictures of docs/job.md: a joint that fluid enters, a body that goes and comes back, loads in local axes, stress from
+before (needs matplotlib)."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ import abut
 from abut.benchmarks import BENCHMARKS
 from abut.benchmarks.penetration import BASE, HEAD, LIGAMENT, WEIGHT
 from abut.benchmarks.removals import LENGTH, STRETCH, YOUNG
+from abut.benchmarks.residual_stress import LENGTH as LONG
+from abut.benchmarks.residual_stress import STRESS
 from abut.materials.invariants import von_mises
 from abut.mesh.make import join, ring
 from page import DOCS, plots
@@ -95,7 +97,37 @@ def load_axes() -> None:
     figure.savefig(DOCS / "pictures" / "load-axes.png", dpi=150)
 
 
+def initial_stress() -> None:
+    """The strip of ``abut verify spring-back``: how it bends, and stress over its height, given and left, beside beams."""
+    solution = abut.solve(BENCHMARKS["spring-back"].model(0))
+    mesh, step = solution.model.mesh, solution.steps[-1]
+    figure, (shape, axes) = plots().subplots(1, 2, figsize=(7.6, 2.8), constrained_layout=True, width_ratios=[1.6, 1.0])
+    cells = next(nodes for _, nodes, _ in mesh.cells_of("strip"))[:, :4]
+    moved = mesh.points + 60.0 * step.displacement
+    shape.add_collection(PolyCollection(mesh.points[cells], facecolors="none", edgecolors="#d5dae0", linewidths=0.4))
+    shown = PolyCollection(moved[cells], edgecolors=GREY, linewidths=0.3, cmap="viridis")
+    shown.set_array(step.stress[cells, 0].mean(axis=1))
+    shape.add_collection(shown)
+    shape.autoscale()
+    shape.set_aspect("equal")
+    shape.axis("off")
+    figure.colorbar(shown, ax=shape, shrink=0.7, label="stress along the strip")
+    column = np.flatnonzero(np.abs(mesh.points[:, 0] - 0.5 * LONG) < 1e-9)
+    column = column[np.argsort(mesh.points[column, 1])]
+    y = np.linspace(-0.5, 0.5, 101)
+    axes.plot(STRESS * (2.0 * y) ** 3, y, color=GREY, lw=1.2, label="initial stress")
+    axes.plot(STRESS * ((2.0 * y) ** 3 - 1.2 * y), y, color="black", lw=0.9, ls="--", label="beam")
+    axes.plot(
+        step.stress[column, 0], mesh.points[column, 1], color=RED, lw=0.0, marker="o", ms=3.0, label="what is left"
+    )
+    axes.set_xlabel("stress along the strip")
+    axes.set_ylabel("height")
+    axes.legend(frameon=False, fontsize=8, loc="lower right")
+    figure.savefig(DOCS / "pictures" / "initial-stress.png", dpi=150)
+
+
 if __name__ == "__main__":
     penetration()
     removal()
     load_axes()
+    initial_stress()

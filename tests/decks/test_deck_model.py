@@ -187,6 +187,19 @@ def test_axes_of_a_support(tmp_path):
     assert np.abs(u).max() > 1e-3
 
 
+@pytest.mark.parametrize(("along", "held"), [("1,0,0", 1), ("0,1,0", 2), ("0,0,1", 0)])
+def test_nodes_on_the_axis_of_cylindrical_axes(along, held, tmp_path):
+    """Any direction across may be the radial one there; CalculiX (transformatrix.f) takes y, z and x for an axis along x, y
+    and z. The corner at the origin is held in that one alone."""
+    text = BRICKS + f"*TRANSFORM, NSET=BOTTOM, TYPE=C\n0,0,0, {along}\n*BOUNDARY\n1, 1\n*TIE, NAME=T\nSLAVE, MASTER\n"
+    model = load(tmp_path, text + step("*CLOAD", "TOP, 3, 1.")).model
+    corner = int(np.flatnonzero((model.mesh.points == 0.0).all(axis=1))[0])
+    on_it = [support for support in model.supports if corner in model.mesh.nodes_of(support.on)]
+    assert [[getattr(s, name) is not None for name in "xyz"] for s in on_it] == [[k == held for k in range(3)]]
+    with pytest.raises(InputError, match="the two points are the same"):
+        load(tmp_path, text.replace(f"0,0,0, {along}", "0,0,1, 0,0,1.") + step("*CLOAD", "TOP, 3, 1."))
+
+
 EQUAL = "*EQUATION\n2\n16, 3, 1., 15, 3, -1.\n2\n17, 3, 1., 15, 3, -1.\n2\n18, 3, 1., 15, 3, -1.\n"
 
 

@@ -10,7 +10,7 @@ import pytest
 
 import abut
 from abut.errors import InputError
-from models.decks import load, step
+from models.decks import BRICKS, HELD, load, step
 
 # A block of 2 x 2 x 2 bricks, node 1 + i + 10 j + 100 k at (i, j, k), held at z = 0
 NODES = "".join(f"{1 + i + 10 * j + 100 * k}, {i}, {j}, {k}\n" for k in range(3) for j in range(3) for i in range(3))
@@ -85,7 +85,7 @@ def test_nodes_turn_in_the_mean(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("card", "words"),
     [
-        ("DIST, 201, 202", "DIST is not supported; TIE, PIN, BEAM, STRAIGHT, PLANE and MEANROT are"),
+        ("SLIDE, 201, 202", "SLIDE is not supported; TIE, PIN, BEAM, DIST, STRAIGHT, PLANE and MEANROT are"),
         ("STRAIGHT, 201, 202", "expected three nodes"),
         ("STRAIGHT, 201, 202, 213", "a node lies .* off the line"),
         ("PLANE, 201, 203, 223", "expected four nodes"),
@@ -175,3 +175,44 @@ def test_two_nodes_at_a_distance(tmp_path: Path) -> None:
     assert (u[2, 2, 2] - u[2, 0, 0]) @ along == pytest.approx(0.0, abs=1e-12)
     with pytest.raises(InputError, match="BEAM: expected two nodes, got 9"):
         load(tmp_path, BLOCK + "*MPC\nBEAM, TOP\n" + PUSH)
+
+
+STRIP = "*MPC\nDIST, 1, 1, 1, 15, 15, 15, 900\n*BOUNDARY\n900, 1, 1, 0.\n"
+FLAT = "*TIE, NAME=T\nSLAVE, MASTER\n*EQUATION\n" + "".join(f"2\n{n}, 3, 1., 15, 3, -1.\n" for n in (16, 17, 18))
+
+
+def strapped(most: float, strip: str = STRIP) -> str:
+    return BRICKS.replace("*ELEMENT", f"900, {most}, 5., 0.\n*ELEMENT", 1) + HELD.replace("ALL", "TOP") + FLAT + strip
+
+
+@pytest.mark.parametrize("finite", [False, True])
+def test_nodes_no_farther_apart(finite: bool, tmp_path: Path) -> None:
+    """A column of height 2 and stiffness E A / 2 under a growing force, whose flat top a strap holds from a stretch of .01
+    on: free before, then there, with what the column does not take in the strap; pushed down it is slack. With NLGEOM
+    forces differ by up to twice the strain of 1 %, of any law (nu = 0)."""
+    lines = ["*AMPLITUDE, NAME=A", "0., 0., 0.25, 0.25, 0.5, 1., 1., -1."]
+    text = strapped(2.01) + "\n".join(lines) + "\n" + step("*CLOAD, AMPLITUDE=A", "TOP, 3, 2.5")
+    text = text.replace("*STEP", "*STEP, NLGEOM") if finite else text
+    text = text.replace("*STATIC", "*STATIC, DIRECT\n0.25, 1.")
+    solution = abut.solve(load(tmp_path, text).model)
+    high = solution.model.mesh.points[:, 2] == 2.0
+    for time, force in ((0.25, 2.5), (0.5, 10.0), (1.0, -10.0)):
+        found = next(s for s in solution.steps if abs(s.factor - time) < 1e-9)
+        (strap,) = found.connectors.values()
+        stretch = min(force * 2.0 / 1000.0, 0.01)
+        rel = 0.02 if finite else 1e-9
+        assert found.displacement[high, 2] == pytest.approx(stretch, rel=rel)
+        assert abs(strap.stop or 0.0) == pytest.approx(max(force - 500.0 * 0.01, 0.0), rel=rel, abs=1e-9)
+
+
+def test_distances_that_are_none(tmp_path: Path) -> None:
+    """Where direction 1 of the last node is free nothing is bounded, as in CalculiX; what cannot be is told."""
+    free = load(tmp_path, strapped(2.01, STRIP.partition("*BOUNDARY")[0]) + step("*CLOAD", "TOP, 3, 2.5"))
+    assert not free.model.connectors
+    for text, said in (
+        (strapped(1.9), "DIST: the nodes are 2 apart already, and may not be more than 1.9"),
+        (strapped(2.01, STRIP.replace("15, 15, 15", "15, 15")), "DIST: expected two nodes, each three times"),
+        (strapped(2.01, STRIP.replace("1, 1, 0.", "1, 1, 0.5")), "moves direction 1 of node 900"),
+    ):
+        with pytest.raises(InputError, match=said):
+            load(tmp_path, text + step("*CLOAD", "TOP, 3, 2.5"))

@@ -89,6 +89,34 @@ def test_written_and_read_again(tmp_path: Path) -> None:
     assert load_job(again).model.connectors == job.model.connectors
 
 
+SPACE = (
+    JOB.replace('"rectangle"', '"box"')
+    .replace("cells = [1, 1]", "z = [0, 1]\ncells = [1, 1, 1]")
+    .replace("cells = [4, 2]", "z = [0, 1]\ncells = [4, 2, 2]")
+    .replace('plane = "strain"\n', "")
+    .replace("y = 0\n[[rigid]]", 'y = 0\nz = 0\n[[loads]]\nkind = "moment"\non = "lever"\nvalue = [4, 0, 0]\n[[rigid]]')
+    .replace('kind = "hinge"', 'kind = "cylindrical"\naxis = [1, 0, 0]\nlimits2 = [-0.1, 0.1]')
+    .replace("at = [0, 0.5]", "at = [0, 0.5, 0.5]")
+)
+
+
+def test_limits_of_a_second_motion(tmp_path: Path) -> None:
+    """The travel's stop has 20 of the load of 30, the turn's all of the moment of 4 about the axis; files, the report and a
+    job written anew know both."""
+    job = load_job(write(tmp_path, SPACE))
+    assert job.model.connectors[0].limits2 == (-0.1, 0.1)
+    solution = abut.solve(job.model)
+    abut.write(solution, tmp_path / "results")
+    with open(tmp_path / "results" / "forces.csv", encoding="utf-8") as file:
+        (row,) = (row for row in csv.DictReader(file) if row["kind"] == "connector")
+    assert [float(row[name]) for name in ("travel", "turn", "stop", "stop2")] == pytest.approx([0.2, 0.1, -20.0, -4.0])
+    page = abut.write_report(solution, tmp_path / "report.html")
+    text = Path(page or tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "stop -20, stop of the second -4" in text
+    write_job(tmp_path / "again.toml", job)
+    assert load_job(tmp_path / "again.toml").model.connectors == job.model.connectors
+
+
 def test_steps_name_what_drives_connectors(tmp_path: Path) -> None:
     steps = '[[steps]]\nname = "a"\n[[steps]]\nname = "b"\n'
     notes = load_job(write(tmp_path, JOB + 'amplitude = [[0, 0], ["a", 1]]\n' + steps)).notes

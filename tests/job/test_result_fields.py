@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 import abut
 from abut.cli import main
 from abut.errors import InputError
+from abut.expression import Expression
 from abut.io.vtu import write_vtu
 from abut.job import load_job
 from abut.job.convert import write_job
@@ -118,7 +120,17 @@ def test_what_cannot_be(old: str, new: str, said: str, folder: Path, capsys: pyt
 
 
 def test_written_anew(folder: Path) -> None:
-    with pytest.raises(
-        InputError, match="has values of result files in it, which a job that is written anew does not keep"
-    ):
-        write_job(folder / "other.toml", load_job(folder / "job.toml"))
+    """A job that `abut convert` writes, elsewhere, reads the same file: the same displacements."""
+    (folder / "deep").mkdir()
+    assert main(["convert", "--quiet", str(folder / "job.toml"), str(folder / "deep" / "other.toml")]) == 0
+    assert 'file = "../thermal.vtu"' in (folder / "deep" / "other.toml").read_text()
+    one, other = (abut.solve(load_job(path).model) for path in (folder / "job.toml", folder / "deep" / "other.toml"))
+    np.testing.assert_allclose(other.displacement, one.displacement, rtol=0, atol=1e-15)
+
+
+def test_names_of_two_files_are_told(folder: Path) -> None:
+    job = load_job(folder / "job.toml")
+    another = Expression("hot", (("hot", abut.result_field(folder / "thermal.vtu", "moved", "y")),))
+    loads = [*job.model.loads, abut.Temperature("b", another)]
+    with pytest.raises(InputError, match="hot: a name of two result files"):
+        write_job(folder / "other.toml", replace(job, model=replace(job.model, loads=loads)))

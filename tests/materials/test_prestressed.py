@@ -14,7 +14,10 @@ from abut.cli import main
 from abut.errors import InputError
 from abut.job.convert import write_job
 from abut.job.load import load_job
+from abut.materials.invariants import von_mises
 from abut.mesh.make import box, join, rectangle
+from abut.output.options import Output
+from abut.report.quantities import extremes
 from abut.verify.tangents import material_tangent
 
 YOUNG, POISSON = 1000.0, 0.3
@@ -156,6 +159,54 @@ def test_messages(stress: str, said: str, tmp_path: Path, capsys: pytest.Capture
         raise InputError(text.out + text.err)
 
 
+@pytest.mark.parametrize("kinematics", ["small", "finite"])
+def test_field_of_results(kinematics: str, tmp_path: Path) -> None:
+    """A line over the height is carried to nodes exactly, and stays when the body has sprung back, in files and in the
+    report's picture; zero in the body that has none."""
+    pieces = {
+        "a": rectangle((0, 4), (-0.5, 0.5), (8, 4), "quad8"),
+        "b": rectangle((9, 10), (-0.5, 0.5), (1, 2), "tri3"),
+    }
+    mesh = join(pieces)
+    supports = [abut.Support(f"{name}.left", x=0, y=0) for name in pieces]
+    solids = [abut.Solid("a", STEEL, initial_stress=(LINE, 0, 3, "x")), abut.Solid("b", STEEL)]
+    load = abut.Traction("b.right", (0.1, 0.0))
+    solution = abut.solve(
+        abut.Model(
+            mesh, solids, supports, [load], plane="strain", kinematics=kinematics, solve=abut.SolveOptions(steps=2)
+        )
+    )
+    x, y = mesh.points.T
+    wanted = np.column_stack([10.0 * y + 5.0, 0.0 * x, 0.0 * x + 3.0, x, 0.0 * x, 0.0 * x])
+    wanted[mesh.nodes_of("b")] = 0.0
+    for step in solution.steps:
+        assert step.remembered["initial_stress"] == pytest.approx(wanted, abs=1e-12)
+    abut.write(solution, tmp_path, output=Output(formats=("vtu", "frd")))
+    assert abut.result_field(tmp_path / "fields_0002.vtu", "initial_stress", 0, "a")(np.array([[2.2, 0.3]])) == (
+        pytest.approx(8.0, rel=1e-6)  # 7 digits
+    )
+    assert abut.result_field(tmp_path / "fields.frd", "ISTRESS", 3, "a")(
+        np.array([[2.2, 0.3, 0.0]])[:, :2]
+    ) == pytest.approx(2.2, rel=1e-5)
+    shown = extremes(solution)["initial von Mises"].high
+    inside = wanted[mesh.nodes_of("a")]
+    assert shown[:, 0] == pytest.approx(float(von_mises(inside).max()), rel=1e-9)
+    assert np.isnan(shown[:, 1]).all() or not shown[:, 1].any()
+
+
+def test_check_lists_it(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    """Components that are not zero, from end to end at the nodes; and what has no value there is an error with its place."""
+    path = tmp_path / "job.toml"
+    path.write_text(JOB.format(stress='["10*y + 5", 0, 0, 1.5]'))
+    assert main(["check", str(path)]) == 0
+    assert "body 'strip': initial stress xx 0 to 10, xy 1.5" in capsys.readouterr().out
+    path.write_text(JOB.format(stress='["1/x", 0, 0, 0]'))
+    assert main(["check", str(path)]) == 2
+    assert "initial_stress: xx" in capsys.readouterr().out
+
+
 def test_rubber_has_none() -> None:
-    with pytest.raises(InputError, match="initial_stress: the material is for finite strains alone"):
+    with pytest.raises(
+        InputError, match="initial_stress: rubber and other materials for finite strains alone hold none"
+    ):
         abut.Solid("b", abut.MooneyRivlin(c10=1.0, c01=0.2, bulk=100.0), initial_stress=(1, 0, 0, 0))

@@ -174,3 +174,42 @@ def test_restart_files_see_other_values(tmp_path: Path) -> None:
     )
     assert differences(description(one), description(one)) == []
     assert differences(description(one), description(other)) != []
+
+
+@pytest.mark.parametrize("ending", ["vtu", "frd", "run", "mesh"])
+def test_bodies_that_touch_have_values_of_their_own(ending: str, tmp_path: Path) -> None:
+    """Two bars side by side, 1 + x in one and 10 + x in the other: at the plane between both, each by its name and number;
+    in files of abut's runs and meshes and in those of other programs. Without a body it is one of both."""
+    mesh = join({"left": box((0, 1), (0, 1), (0, 1), (2, 2, 2)), "right": box((1, 2), (0, 1), (0, 1), (3, 1, 1))})
+    values = mesh.points[:, 0] + np.where(np.arange(len(mesh.points)) < 27, 1.0, 10.0)
+    blocks = [(block.kind, block.nodes) for block in mesh.blocks]
+    number = np.zeros(mesh.n_cells, dtype=np.int64)
+    number[mesh.bodies["right"]] = 1
+    path, array, first = tmp_path / f"values.{ending}", "T", 0
+    if ending == "frd":
+        data = Dataset("T", ("T",), np.arange(len(values)), values[:, None])
+        write_frd(path, mesh.points, blocks, number, list(mesh.bodies), [Increment(1, 1.0, (data,))])
+        first = 1
+    elif ending == "run":
+        moved = (("left", "1 + x"), ("right", "10 + x"))  # drawn at both ends, without lateral contraction
+        supports = [abut.Support(f"{n}.{end}", x=to, y=0, z=0) for n, to in moved for end in ("left", "right")]
+        model = abut.Model(mesh, [abut.Solid(name, abut.LinearElastic(1.0, 0.0)) for name in mesh.bodies], supports)
+        abut.write(abut.solve(model), tmp_path)
+        path, array = tmp_path / "fields_0001.vtu", "displacement"
+    else:
+        path = tmp_path / "values.vtu"
+        names = {"region_names": list(mesh.bodies)} if ending == "mesh" else None
+        write_vtu(path, mesh.points, blocks, {"T": values}, {"region" if names else "body": number}, names)
+    component = "x" if ending == "run" else None
+    between = np.array([[1.0, 0.3, 0.6], [1.0, 0.9, 0.1]])
+    named = ("left", "right") if ending != "vtu" else (0, 1)
+    for bodies in (named, (first, first + 1)):
+        for body, wanted in zip(bodies, (2.0, 11.0)):
+            field = abut.result_field(path, array, component, body)
+            assert field(between) == pytest.approx(wanted, rel=1e-6)
+            assert len(field.mesh.points) == (27 if wanted < 3.0 else 16)
+    assert set(abut.result_field(path, array, component)(between)) <= {2.0, 11.0}
+    with pytest.raises(InputError, match="outside its mesh"):
+        abut.result_field(path, array, component, first)(np.array([[1.9, 0.5, 0.5]]))
+    with pytest.raises(InputError, match=r"no body 'lid'.*left, right|no body 'lid'.*there are 0, 1"):
+        abut.result_field(path, array, component, "lid")

@@ -154,6 +154,40 @@ def test_limits(kinematics: str, moment: float, limits: tuple[float, float], tur
 
 
 @pytest.mark.parametrize("kinematics", ["small", "finite"])
+@pytest.mark.parametrize(("push", "moment", "travel", "turn"), [
+    (4.0, 6.0, 0.2, 0.3), (-2.0, 6.0, -0.1, 0.3), (4.0, -6.0, 0.2, -0.1),
+])  # fmt: skip
+def test_limits_of_both_motions(kinematics: str, push: float, moment: float, travel: float, turn: float) -> None:
+    """A bar on a cylindrical joint: a spring of 20 takes 20 t of the push, up to the stop, which has the rest; the moment
+    about the axis drives the turn, which nothing else holds, to the limit on its side, which has all of it."""
+    joint = Joint(
+        "c", "cylindrical", "bar", at=(0, 0, 0), axis=(0, 0, 1), limits=(-1.0, 0.2), limits2=(-0.1, 0.3), stiffness=20.0
+    )
+    loads = [abut.Force("bar", (0.0, 0.0, push)), abut.Moment("bar", (0.0, 0.0, moment))]
+    model = solid({"bar": ((0, 0, 0), (10, 0, 0))}, [joint], {"bar": {"reference": (0, 0, 0)}}, kinematics=kinematics)
+    found = solved(replace(model, loads=loads)).connectors["c"]
+    assert found.motion == pytest.approx({"travel": travel, "turn": turn}, rel=1e-9)
+    assert found.stop == pytest.approx(20.0 * travel - push, abs=1e-8)
+    assert found.stop2 == pytest.approx(-moment, abs=1e-8)
+    assert found.force == pytest.approx([0.0, 0.0, -push], abs=1e-8)
+    assert found.moment == pytest.approx([0.0, 0.0, -moment], abs=1e-8)
+
+
+def test_limits_of_a_prescribed_joint() -> None:
+    """A universal joint between shafts in line: one arm of the cross is driven, the other is bent up to its limit."""
+    joint = Joint(
+        "u", "universal", "bar", at=(0, 0, 0), axis=(0, 1, 0), axis2=(0, 0, 1), motion=0.2, limits2=(-0.1, 0.15)
+    )
+    model = solid({"bar": ((0, 0, 0), (10, 0, 0))}, [joint], {"bar": {"reference": (0, 0, 0)}}, **FINITE)
+    found = solved(replace(model, loads=[abut.Moment("bar", (0.0, 0.0, 5.0))])).connectors["u"]
+    assert found.motion == pytest.approx({"turn": 0.2, "turn2": 0.15}, rel=1e-9)
+    assert found.drive is not None
+    assert found.stop is None
+    # the moment along the second arm, which the first one has turned by 0.2 from z
+    assert found.stop2 == pytest.approx(-5.0 * np.cos(0.2), rel=1e-8)
+
+
+@pytest.mark.parametrize("kinematics", ["small", "finite"])
 @pytest.mark.parametrize("moment", [30.0, -30.0])
 def test_limits_alone(kinematics: str, moment: float) -> None:
     """What only limits hold lies at that to which loads drive it, at once; also where these turn round."""
@@ -186,6 +220,7 @@ def test_a_stop_at_the_end_of_a_way() -> None:
 def test_tangents(kind: str, keys: dict[str, Any]) -> None:
     """The tangent is the derivative of forces and conditions, central differences at a state that meets neither: 1e-7."""
     more = {} if kind == "ball" else {"stiffness": 30.0, "load": 7.0, "limits": (-9.0, 1e-3)}
+    more |= {"limits2": (-9.0, 1e-3)} if kind in ("cylindrical", "universal") else {}
     bars = {"a": ((0, 0, 0), (10, 0, 0)), "b": ((10, 0, 0), (10, 7, 0))}
     model = solid(bars, [Joint("j", kind, "b", "a", at=(9, 1, 2), **keys, **more)], **FINITE)
     term = connected(model, supports(model))
@@ -194,7 +229,7 @@ def test_tangents(kind: str, keys: dict[str, Any]) -> None:
     n = model.mesh.points.size
     values = np.concatenate([rng.normal(size=n), rng.normal(size=model.dofs.size - n)])
     if more:  # at its stop
-        values[-1] = 50.0
+        values[-len(term.joints[0].connector.limited) :] = 50.0
 
     def force(x: np.ndarray) -> np.ndarray:
         motion = Motion(1.0, x[:n], fields={"connectors": x[n:, None]})
@@ -283,6 +318,7 @@ def test_what_nothing_holds_is_named() -> None:
     ({"stiffness": -1.0}, "stiffness: expected a number > 0"),
     ({"axis2": (0, 0, 1)}, 'axis2 goes with kind = "universal"'),
     ({"kind": "ball", "limits": (-1, 1)}, 'kind = "ball" has no single free motion'),
+    ({"limits2": (-1, 1)}, 'limits2: kind = "hinge" has no second free motion'),
 ])  # fmt: skip
 def test_refused(keys: dict[str, Any], said: str) -> None:
     with pytest.raises(InputError, match=said):

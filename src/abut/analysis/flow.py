@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.analysis.initial_stress import initial_stress
 from abut.bodies.evaluation import History
 from abut.bodies.history_fields import integral, largest, names, nodal
 from abut.bodies.solids import Solids
 from abut.materials.plastic import EQUIVALENT, WORK
+from abut.solution import Step
 from abut.solution.flow import Flow
 
 
-def remembered(solids: Solids, history: History) -> dict[str, NDArray[np.float64]]:
-    """Of all materials at the points, by name."""
-    return {name: nodal(solids, history, name) for name in names(solids)} if history else {}
+def remembered(solids: Solids, history: History, before: Sequence[Step]) -> dict[str, NDArray[np.float64]]:
+    """Of all materials at the points, by name; and the stress that they had at the outset. before: the steps so far."""
+    since = {name: nodal(solids, history, name) for name in names(solids)} if history else {}
+    return {**since, **initial_stress(solids, before)}
 
 
 def flow(solids: Solids, history: History) -> Flow | None:

@@ -162,7 +162,7 @@ def step_result(
         energy=work if strained else None,
         stress_error=stress_error(solids, end.nodal, own, values, contacts) if strained else None,
         volume_change=volume_change(solids, end.nodal, own, change) if shown is None and strained else None,
-        remembered={**remembered(solids, end.motion.history), **node_fields(problem, end.motion, state)},
+        remembered={**remembered(solids, end.motion.history, before), **node_fields(problem, end.motion, state)},
         penetrations=penetration_results(problem, state, end.displacement),
         flow=end.flow,
         preloads=_preloads(end),

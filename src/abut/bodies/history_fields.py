@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
@@ -32,21 +32,27 @@ def names(solids: Solids) -> tuple[str, ...]:
 
 
 def nodal(solids: Solids, history: History, name: str) -> Array:
-    """At the points, (n_points,) or (n_points, k): values at integration points carried linearly to the nodes of a cell, no
-    farther than its largest and smallest ones, and averaged over the cells of a point; zero elsewhere."""
+    """At the points, (n_points,) or (n_points, k), as in ``averaged`` within each cell's own."""
+    result = averaged(solids, at_cells(solids, history, name), within=True)
+    return np.asarray(result[:, 0] if result.shape[1] == 1 else result)
+
+
+def averaged(solids: Solids, values: Iterable[tuple[Group, Array]], within: bool = False) -> Array:
+    """At the points, (n_points, k): values at integration points, (cells, q, k) of groups, carried linearly to the nodes of
+    a cell, and averaged over the cells of a point; zero elsewhere. within: no farther than a cell's largest and smallest."""
     n = len(solids.points)
     total, count = np.zeros((n, 0)), np.zeros(n)
-    for group, values in at_cells(solids, history, name):
-        there = carried(group.kind, group.rule, reference_nodes(group.kind)) @ values
-        there = np.clip(there, values.min(axis=1, keepdims=True), values.max(axis=1, keepdims=True))
+    for group, inside in values:
+        there = carried(group.kind, group.rule, reference_nodes(group.kind)) @ inside
+        if within:
+            there = np.clip(there, inside.min(axis=1, keepdims=True), inside.max(axis=1, keepdims=True))
         if not total.size:
-            total = np.zeros((n, values.shape[2]))
+            total = np.zeros((n, inside.shape[2]))
         nodes = group.nodes.ravel()
         count += np.bincount(nodes, minlength=n)
-        for k in range(values.shape[2]):
+        for k in range(inside.shape[2]):
             total[:, k] += np.bincount(nodes, there[..., k].ravel(), n)
-    result = total / np.maximum(count, 1.0)[:, None]
-    return np.asarray(result[:, 0] if result.shape[1] == 1 else result)
+    return np.asarray(total / np.maximum(count, 1.0)[:, None])
 
 
 def largest(solids: Solids, history: History, name: str) -> tuple[float, int]:

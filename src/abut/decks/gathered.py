@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -14,7 +15,7 @@ from abut.io.deck.time_histories import courses
 from abut.model import Connector
 from abut.types import Json
 
-KINDS = {"STRAIGHT": "straight", "PLANE": "plane", "MEANROT": "mean-turn", "BEAM": "distance"}
+KINDS = {"STRAIGHT": "straight", "PLANE": "plane", "MEANROT": "mean-turn", "BEAM": "distance", "DIST": "distance"}
 
 
 def connectors(deck: Deck, groups: Groups, plane: str | None, thickness: float) -> Iterator[Connector]:
@@ -32,6 +33,16 @@ def connectors(deck: Deck, groups: Groups, plane: str | None, thickness: float) 
         keys: Json = {}
         if found.kind == "BEAM":
             keys["motion"] = 0.0
+        if found.kind == "DIST":
+            if (found.pilot, 1) not in moved:
+                continue  # a distance that is free
+            if history(moved[found.pilot, 1])[0]:
+                raise DeckError(
+                    found.place,
+                    f"*MPC DIST: *BOUNDARY moves direction 1 of node {found.pilot}; only 0 there is read, which says that "
+                    "the distance is bounded",
+                )
+            keys["limits"] = (-math.inf, found.limit)
         if found.kind == "MEANROT":
             keys |= {} if plane else {"axis": found.axis}
             pilot = (found.pilot, 1)

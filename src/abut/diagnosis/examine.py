@@ -14,6 +14,7 @@ from abut.diagnosis.contactor import sides
 from abut.diagnosis.cost import cost
 from abut.diagnosis.finding import Finding, Motion, Report, from_error, in_order
 from abut.diagnosis.friction import friction
+from abut.diagnosis.initial_stress import initial_stress
 from abut.diagnosis.interface import MIXED, interface, not_facing
 from abut.diagnosis.probes import probes
 from abut.diagnosis.quality import quality, too_stiff
@@ -51,7 +52,8 @@ def check(model: Model) -> Report:
         What is no model.
     """
     checks.instance(model, Model, "check", "a model (abut.Model)")
-    findings, doubts = [*quality(model.mesh), *probes(model), *too_stiff(model)], units(model)
+    findings = [*quality(model.mesh), *probes(model), *too_stiff(model), *initial_stress(model)]
+    doubts = units(model)
     shown: list[Motion] = []
     try:
         supported = supports(model)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -13,10 +13,13 @@ from abut.cells import CELLS
 from abut.errors import InputError, nearest
 from abut.io.frd import TYPES
 from abut.io.vtu import VERTEX, VTK_KIND, load_grid
+from abut.types import Foreign
 
 NODES_OF = {code: (kind, order) for kind, (code, order) in reversed(list(TYPES.items()))}  # hex20 in place of hex27
+GROUPS = {"body": "body_names", "region": "region_names"}  # arrays of cells, and lists of their names, of VTU files
 LINES = (11, 12)  # beams of two and three nodes, which hold no points between
 WIDTH = 12  # of a number in an .frd file
+MATERIAL = "    1UMAT"  # begins a line with number and name of a material, which cells have by its number
 ROW = 13  # where the numbers of a row begin: after its key and the number of the node
 DERIVED = "ALL"  # the component of a vector that is its size, and stands in no row
 
@@ -24,12 +27,15 @@ DERIVED = "ALL"  # the component of a vector that is its size, and stands in no 
 @dataclass(frozen=True)
 class PointValues:
     """points: (n, 3); cells: kind -> connectivity (m, nodes), in the order of ``abut.cells``; values: (n, k), NaN where a
-    point has none; components: their names, empty where the file gives none."""
+    point has none; components: their names, empty where the file gives none; groups: kind -> (m,) number of the body of
+    each cell, empty where the file tells none; bodies: names of bodies -> their numbers."""
 
     points: NDArray[np.float64]
     cells: Mapping[str, NDArray[np.int64]]
     values: NDArray[np.float64]
     components: tuple[str, ...] = ()
+    groups: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)
+    bodies: Mapping[str, int] = field(default_factory=dict)
 
 
 def read_values(path: Path, array: str) -> PointValues:
@@ -61,7 +67,8 @@ def _vtu(path: Path, array: str) -> PointValues:
     values = vtk_to_numpy(data.GetArray(array)).astype(float)
     offsets = vtk_to_numpy(grid.GetCells().GetOffsetsArray())
     nodes = vtk_to_numpy(grid.GetCells().GetConnectivityArray())
-    cells = {}
+    numbers, bodies = _bodies(grid)
+    cells, groups = {}, {}
     for code in np.unique(kinds).tolist():
         if code == VERTEX:
             continue
@@ -70,22 +77,43 @@ def _vtu(path: Path, array: str) -> PointValues:
         rows = np.flatnonzero(kinds == code)
         kind = VTK_KIND[code]
         cells[kind] = nodes[offsets[rows][:, None] + np.arange(CELLS[kind].nodes)].astype(np.int64)
+        if numbers is not None:
+            groups[kind] = numbers[rows]
     points = vtk_to_numpy(grid.GetPoints().GetData()).astype(float)
-    return PointValues(points, cells, values.reshape(len(points), -1))
+    return PointValues(points, cells, values.reshape(len(points), -1), groups=groups, bodies=bodies)
+
+
+def _bodies(grid: Foreign) -> tuple[NDArray[np.int64] | None, dict[str, int]]:
+    """Of a VTU file: the number of each cell's body, None where no array of cells tells it, and the bodies' names."""
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    for name, names in GROUPS.items():
+        array, texts = grid.GetCellData().GetArray(name), grid.GetFieldData().GetAbstractArray(names)
+        if array is None or array.GetNumberOfComponents() != 1:
+            continue
+        count = 0 if texts is None else texts.GetNumberOfValues()
+        return vtk_to_numpy(array).astype(np.int64), {texts.GetValue(i): i for i in range(count)}
+    return None, {}
 
 
 def _frd(path: Path, array: str) -> PointValues:
-    """Sections begin with "2C" (nodes), "3C" (elements) and "-4" (a name); "-1" begins a row, "-2" goes on with it."""
+    """Of an .frd file, whose materials are its bodies.
+
+    Sections begin with "2C" (nodes), "3C" (elements) and "-4" (a name); "-1" begins a row, "-2" goes on with it."""
     numbers: dict[int, int] = {}
     points: list[list[float]] = []
     cells: dict[str, list[list[int]]] = {}
+    groups: dict[str, list[int]] = {}
+    bodies: dict[str, int] = {}
     known: list[str] = []
     components: list[str] = []
     found: dict[int, list[float]] = {}
-    code, node, section = 0, 0, ""
+    code, group, node, section = 0, 0, 0, ""
     try:
         for key, line in _lines(path):
-            if key in ("2C", "3C", "-4"):
+            if line.startswith(MATERIAL):
+                bodies[line[len(MATERIAL) + 5 :].strip()] = int(line[len(MATERIAL) : len(MATERIAL) + 5])
+            elif key in ("2C", "3C", "-4"):
                 section = key if key != "-4" else line[5:13].strip()
                 if key == "-4":
                     known.append(section)
@@ -99,7 +127,9 @@ def _frd(path: Path, array: str) -> PointValues:
                 numbers[int(line[3:13])] = len(points)
                 points.append(_row(line)[:3])
             elif key == "-1" and section == "3C":
-                code = int(line[13:18])
+                code, group = int(line[13:18]), int(line[23:28])
+                if code not in LINES:
+                    groups.setdefault(NODES_OF[code][0], []).append(group)
             elif key == "-2" and section == "3C" and code not in LINES:
                 kind = NODES_OF[code][0]
                 cells.setdefault(kind, []).append([int(line[i : i + 10]) for i in range(3, len(line), 10)])
@@ -116,6 +146,8 @@ def _frd(path: Path, array: str) -> PointValues:
         tables,
         _table(found, numbers, len(components)),
         tuple(components),
+        {kind: np.array(rows) for kind, rows in groups.items()},
+        bodies,
     )
 
 

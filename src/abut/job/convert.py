@@ -15,6 +15,8 @@ from abut.io.atomic import write_text
 from abut.job.load import Job
 from abut.job.load_tables import LOADS
 from abut.job.material_tables import MATERIALS
+from abut.job.parameters import field_names
+from abut.job.result_fields import tables_of
 from abut.job.schema import JobFile
 from abut.job.times import with_shares, with_times
 from abut.materials.material import Material
@@ -48,8 +50,8 @@ def write_job(path: Path, job: Job) -> list[Path]:
 
     Raises InputError for what a job file cannot hold (functions of position) and where a file cannot be written."""
     mesh = path.with_suffix(".vtu")
-    table = job_table(job.model, mesh.name, job.output)
-    JobFile.model_validate(with_shares(table))
+    table = job_table(job.model, mesh.name, job.output, path.parent)
+    JobFile.model_validate(with_shares(table), context=field_names(table))
     head = [f"# from {job.path.name}"]
     head += [f"# ignored: {what}" for what in job.ignored] + [f"# {note}" for note in job.notes]
     write_mesh(mesh, job.model.mesh)
@@ -57,8 +59,8 @@ def write_job(path: Path, job: Job) -> list[Path]:
     return [path, mesh]
 
 
-def job_table(model: Model, mesh: str, output: Output = EVERYTHING) -> Json:
-    """The job file of a model as nested tables, with ``mesh`` the file of its mesh."""
+def job_table(model: Model, mesh: str, output: Output = EVERYTHING, folder: Path = Path()) -> Json:
+    """The job file of a model as nested tables, with ``mesh`` the file of its mesh; folder: where it will lie."""
     materials: dict[Material, str] = {}
     for solid in model.solids:
         if type(solid.material) not in MATERIAL_KINDS:
@@ -66,6 +68,8 @@ def job_table(model: Model, mesh: str, output: Output = EVERYTHING) -> Json:
         for material in (*_parts(solid.material), solid.material):
             materials.setdefault(material, f"material-{len(materials) + 1}")
     table: Json = {"schema": 1, "mesh": {"file": mesh}}
+    if of_files := tables_of((*model.solids, *model.supports, *model.loads, *model.modes), folder):
+        table["fields"] = of_files
     table["model"] = {"plane": model.plane} if model.plane is not None else {}
     if model.finite:
         table["model"]["kinematics"] = model.kinematics
@@ -167,9 +171,9 @@ def _plain(record: Any) -> Json:
 
 def _value(value: Any, name: str) -> Any:
     if isinstance(value, Expression):
-        return _text(value, name)
+        return value.text
     if isinstance(value, Expressions):
-        return [_text(component, name) for component in value.components]
+        return [component.text for component in value.components]
     if callable(value) and not isinstance(value, Amplitude):
         raise InputError(f"{name}: a job file holds numbers and expressions of position, not functions")
     if isinstance(value, Mapping):
@@ -181,15 +185,6 @@ def _value(value: Any, name: str) -> Any:
     if isinstance(value, (list, tuple)):
         return [_value(item, name) for item in value]
     return value if isinstance(value, (str, int, float)) else _plain(value)
-
-
-def _text(value: Expression, name: str) -> str:
-    if value.named:
-        raise InputError(
-            f"{name}: {value.text!r} has values of result files in it, which a job that is written anew does not keep; "
-            "keep [fields] in the job that you have"
-        )
-    return value.text
 
 
 def toml(table: Mapping[str, object]) -> str:

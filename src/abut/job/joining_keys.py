@@ -39,6 +39,7 @@ JOINING: dict[str, dict[str, str]] = {
         "axis": "direction of the axis, undeformed, of any length; none of ball, straight, plane, distance, nor in 2D of "
         "hinge and mean-turn",
         "axis2": "universal: axis on the side of on, perpendicular to axis",
+        "limits2": "the same of the second free motion: the turn of cylindrical, turn2 of universal",
         "limits": "lower and upper limit of the free motion, which begins at 0; either may be inf [radian, or length]",
         "motion": "prescribed free motion [radian, or length]",
         "load": "moment or force along the free motion [force length, or force]",

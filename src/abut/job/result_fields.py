@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import dataclasses
+import os
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -34,7 +36,7 @@ def read_fields(
                 "another directory in [output]"
             )
         try:
-            result.append((name, result_field(folder / table.file, table.array, table.component)))
+            result.append((name, result_field(folder / table.file, table.array, table.component, table.body)))
         except InputError as error:
             raise InputError(f"fields.{name}: {error}") from None
     return tuple(result)
@@ -43,10 +45,41 @@ def read_fields(
 def told(named: Named) -> list[str]:
     """What each of them is, in words."""
     return [
-        f"{name}: {field.array!r} of {field.path}, {np.nanmin(field.values):.6g} to {np.nanmax(field.values):.6g} at "
-        f"{len(field.values)} points"
+        f"{name}: {field.array!r} of {field.path}{'' if field.body is None else f', body {field.body!r}'}, "
+        f"{np.nanmin(field.values):.6g} to {np.nanmax(field.values):.6g} at {len(field.values)} points"
         for name, field in named
     ]
+
+
+def tables_of(records: Iterable[Any], folder: Path) -> Json:
+    """The tables of what expressions in some records have by name, for a job file in ``folder``. Raises InputError where two
+    of one name differ, and for functions that are not of a file."""
+    found: dict[str, ResultField] = {}
+    for name, field in (pair for record in records for pair in _named(record)):
+        if not isinstance(field, ResultField):
+            raise InputError(f"{name}: a job file holds values of result files by name, not functions")
+        if found.setdefault(name, field) is not field and field != found[name]:
+            raise InputError(f"{name}: a name of two result files; give one of them another")
+    return {
+        name: {
+            "file": Path(os.path.relpath(field.path.resolve(), folder.resolve())).as_posix(),
+            "array": field.array,
+            **{key: value for key in ("component", "body") if (value := getattr(field, key)) is not None},
+        }
+        for name, field in found.items()
+    }
+
+
+def _named(value: Any) -> Iterator[tuple[str, Any]]:
+    """What expressions in a record have by name."""
+    if isinstance(value, Expression):
+        yield from value.named
+    elif isinstance(value, (tuple, list)):
+        for item in value:
+            yield from _named(item)
+    elif dataclasses.is_dataclass(value):
+        for part in dataclasses.fields(value):
+            yield from _named(getattr(value, part.name))
 
 
 def with_fields(given: Json, named: Named, where: str) -> Json:

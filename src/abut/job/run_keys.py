@@ -65,6 +65,7 @@ RUN: dict[str, dict[str, str]] = {
         "file": "result file beside the job file: .vtu, or .frd as text, of which the last step counts",
         "array": "name of the values at its points, such as temperature, displacement; in .frd files NDTEMP, DISP",
         "component": "of a vector or tensor: its name in the file, x, y or z of a vector, or its number from 0",
+        "body": "name or number of the file's body (in .frd files material) whose cells alone are read; left out: all",
     },
     "StartTable": {
         "results": "folder of the results of the other job, beside the job file; it was run with output.restart = true",

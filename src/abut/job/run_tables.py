@@ -42,6 +42,7 @@ class ResultFieldTable(Table):
     file: str
     array: str
     component: str | int | None = None
+    body: str | int | None = None
 
 
 class StartTable(Table):

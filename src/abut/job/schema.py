@@ -186,7 +186,7 @@ SPRING = table_of(
 )
 CONNECTOR = table_of(
     Connector,
-    {"kind": Annotated[str, OneOf(CONNECTORS)], "limits": Limits | None},
+    {"kind": Annotated[str, OneOf(CONNECTORS)], "limits": Limits | None, "limits2": Limits | None},
     "a joint between two reference points, or one and the ground",
 )
 HOLD = table_of(

@@ -22,6 +22,7 @@ from abut.materials.material import (
 )
 from abut.materials.places import Places, is_local, placed
 
+INITIAL = "initial_stress"  # of the field of results
 NAMES = {2: ("xx", "yy", "zz", "xy"), 3: ("xx", "yy", "zz", "xy", "yz", "zx")}
 
 
@@ -69,12 +70,17 @@ class Prestressed(OwnMaterial):
     def initial(self, n: int) -> Array:
         return self.material.initial(n)
 
+    def held(self, points: Array) -> Array:
+        """The stress at points (n, dim) before anything moves, (n, 6), xx yy zz xy yz zx."""
+        result = np.zeros((len(points), 6))
+        for column, (name, value) in enumerate(zip(NAMES[points.shape[1]], self.stress)):
+            result[:, column] = evaluate(value, points, f"{self.where}: initial_stress: {name}")
+        return result
+
     def at(self, places: Places) -> Material:
         """As in ``LocalMaterial``."""
-        here, dim, n = placed(self.material, places), places.points.shape[1], len(places.points)
-        held = np.zeros((n, 6))
-        for column, (name, value) in enumerate(zip(NAMES[dim], self.stress)):
-            held[:, column] = evaluate(value, places.points, f"{self.where}: initial_stress: {name}")
+        here, n = placed(self.material, places), len(places.points)
+        held = self.held(places.points)
         tangent = here.evaluate(np.zeros((n, 6)), here.initial(n))[1]
         strain = (np.linalg.pinv(tangent, hermitian=True) @ held[..., None])[..., 0]
         if not is_local(self.material):

@@ -91,6 +91,8 @@ class Connector:
         Of a spring along the free motion, without force at the outset [force length / radian, or force/length].
     amplitude : Amplitude, optional
         Of motion or load over time.
+    limits2 : (float, float), optional
+        As limits, of the second free motion: the turn of "cylindrical", ``turn2`` of "universal".
 
     Raises
     ------
@@ -115,6 +117,7 @@ class Connector:
     load: float | None = None
     stiffness: float | None = None
     amplitude: History = None
+    limits2: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         where = f"connector '{self.name}'"
@@ -165,23 +168,21 @@ class Connector:
         if self.motion is not None and len(given) > 1:
             other = next(key for key in given if key != "motion")
             raise InputError(f"{where}: {other}: the free motion is prescribed by motion; give one of them")
-        if self.limits is None:
-            return
-        try:
-            lower, upper = (float(value) for value in checks.listed(self.limits, f"{where}: limits", "numbers"))
-        except (TypeError, ValueError):
-            raise InputError(f"{where}: limits: expected [lower, upper], got {self.limits!r}") from None
-        if not lower <= 0.0 <= upper or lower == upper:
-            raise InputError(
-                f"{where}: limits: expected lower <= 0 <= upper, as the motion begins at 0, and one of them other than 0, "
-                f"got [{lower:g}, {upper:g}]"
-            )
-        object.__setattr__(self, "limits", (lower, upper))
+        if self.limits2 is not None and len(self.motions) < 2:
+            raise InputError(f'{where}: limits2: kind = "{self.kind}" has no second free motion; leave limits2 out')
+        for key in ("limits", "limits2"):
+            if getattr(self, key) is not None:
+                object.__setattr__(self, key, _limits(getattr(self, key), f"{where}: {key}"))
+
+    @property
+    def limited(self) -> tuple[tuple[int, tuple[float, float]], ...]:
+        """Numbers of the free motions that have limits, with these."""
+        return tuple((k, given) for k, given in enumerate((self.limits, self.limits2)) if given is not None)
 
     @property
     def motions(self) -> tuple[str, ...]:
         """Names of the free motions that are reported, "turn" (radian) or "travel" (length); the first is that of limits,
-        motion, load and stiffness."""
+        motion, load and stiffness, the second that of limits2."""
         return MOTIONS[self.kind]
 
     @property
@@ -197,8 +198,21 @@ class Connector:
         return HELD[self.kind] if mesh.dim == 3 else HELD_IN_PLANE[self.kind]
 
     def multipliers(self, mesh: Mesh) -> int:
-        """How many there are: one for each motion that it takes, one for limits, one for what is prescribed."""
-        return self.held(mesh) + (self.limits is not None) + (self.motion is not None)
+        """How many there are: one for each motion that it takes, for each that has limits, and for what is prescribed."""
+        return self.held(mesh) + len(self.limited) + (self.motion is not None)
+
+
+def _limits(given: object, where: str) -> tuple[float, float]:
+    try:
+        lower, upper = (float(value) for value in checks.listed(given, where, "numbers"))
+    except (TypeError, ValueError):
+        raise InputError(f"{where}: expected [lower, upper], got {given!r}") from None
+    if not lower <= 0.0 <= upper or lower == upper:
+        raise InputError(
+            f"{where}: expected lower <= 0 <= upper, as the motion begins at 0, and one of them other than 0, "
+            f"got [{lower:g}, {upper:g}]"
+        )
+    return lower, upper
 
 
 @dataclass(frozen=True)

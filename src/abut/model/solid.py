@@ -73,7 +73,8 @@ class Solid:
                 )
             if not is_small(self.material):
                 raise InputError(
-                    f"{where}: the material is for finite strains alone; take one that is linear at small ones"
+                    f"{where}: rubber and other materials for finite strains alone hold none; take one that is linear at "
+                    "small strains"
                 )
             object.__setattr__(self, "initial_stress", tuple(number_or_field(value, where) for value in given))
 

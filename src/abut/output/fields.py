@@ -19,7 +19,8 @@ def write_fields(folder: Path, model: Model, step: Step, output: Output = EVERYT
     """The fields of a step that ``output`` names as one VTU file. Raises InputError where the file cannot be written."""
     grid = output.of_bodies(field_grid(model.mesh, step.displacement, step.stress, cell_error(step), step.remembered))
     path = folder / whole_name(step.number)
-    write_vtu(path, grid.points, grid.blocks, grid.point_data, grid.cell_data, raw=True, small=output.small)
+    names = {"body_names": list(model.mesh.bodies)}
+    write_vtu(path, grid.points, grid.blocks, grid.point_data, grid.cell_data, names, raw=True, small=output.small)
     (folder / list_name(step.number)).unlink(missing_ok=True)  # of an earlier run on several processes
     remove_pieces(folder, step.number)
 

@@ -23,7 +23,8 @@ def table(solution: Solution) -> str:
     moment that about their mean; of couplings and rigid bodies all are those of the reference. Rotations of supports are
     empty. Free components have no force. Of a preload the displacement is its shortening along the normal of the section,
     force and moment what the side before the section exerts on that beyond it. Of a connector there are its free motions,
-    force and moment about the joint on the body ``on``, and what its stop and drive do along the first motion."""
+    force and moment about the joint on the body ``on``, and what its stop and drive do along the first motion, and the stop
+    of the second one where any has limits."""
     dim = solution.model.dim
     axes, turns = "xyz"[:dim], "z" if dim == 2 else "xyz"
     head = ["step", "factor", "converged", "kind", "name"]
@@ -33,7 +34,8 @@ def table(solution: Solution) -> str:
     if turning:
         head += [f"{name}_{axis}" for name in ("rotation", "moment") for axis in turns]
     free = list(dict.fromkeys(name for joint in solution.model.connectors for name in joint.motions))
-    joints = [*free, "stop", "drive"] if solution.model.connectors else []
+    acts = ["stop", *(["stop2"] if any(joint.limits2 for joint in model.connectors) else []), "drive"]
+    joints = [*free, *acts] if model.connectors else []
     head += joints
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
@@ -55,7 +57,7 @@ def table(solution: Solution) -> str:
         for name, joint in step.connectors.items():
             moved = [joint.motion.get(what, "") for what in free]
             exerted = [*joint.force.tolist(), *[""] * len(turns), *joint.moment.tolist()]
-            along = ["" if value is None else value for value in (joint.stop, joint.drive)]
+            along = ["" if value is None else value for value in (getattr(joint, what) for what in acts)]
             rows.writerow([*_step(step), "connector", name, *[""] * dim, *exerted, *moved, *along])
         for spring in solution.model.springs:
             motion = step.displacement[solution.model.mesh.nodes_of(spring.on)].mean(axis=0)

@@ -10,13 +10,14 @@ from numpy.typing import NDArray
 
 from abut.io.frd import TENSOR, VECTOR, Dataset, Increment, write_frd
 from abut.materials.plastic import EQUIVALENT, WORK
+from abut.materials.prestressed import INITIAL
 from abut.output.options import CONTACT, MATERIAL, Output
 from abut.solution import Solution, Step
 from abut.solution.grids import CONTACTOR, TARGET, contact_grid, vectors
 
 FILE = "fields.frd"
 STRESS = ("SXX", "SYY", "SZZ", "SXY", "SYZ", "SZX")
-NAMES = {EQUIVALENT: "PE", WORK: "PWORK", "plastic_strain": "PSTRAIN"}  # of what materials remember
+NAMES = {EQUIVALENT: "PE", WORK: "PWORK", "plastic_strain": "PSTRAIN", INITIAL: "ISTRESS"}  # of what materials remember
 STRAINS = {"plastic_strain": ("EPXX", "EPYY", "EPZZ", "EPXY", "EPYZ", "EPZX")}  # whose shear is doubled
 LONGEST = 8  # characters of a name
 

@@ -43,6 +43,8 @@ class ResultField:
         Its cells.
     values : (n_points,) array of float
         At the points of the mesh, NaN where there is none.
+    component, body : str or int, optional
+        As they were asked for.
 
     Raises
     ------
@@ -54,6 +56,8 @@ class ResultField:
     array: str
     mesh: Mesh
     values: NDArray[np.float64]
+    component: str | int | None = field(default=None, metadata={"decides": False})
+    body: str | int | None = field(default=None, metadata={"decides": False})
 
     def __call__(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         if points.shape[1] != self.mesh.dim:
@@ -95,7 +99,9 @@ class ResultField:
         return np.asarray(np.where(weights != 0.0, weights * values, 0.0).sum(axis=1))
 
 
-def result_field(path: str | Path, array: str, component: str | int | None = None) -> ResultField:
+def result_field(
+    path: str | Path, array: str, component: str | int | None = None, body: str | int | None = None
+) -> ResultField:
     """Values of a result file as a function of position, for supports and loads.
 
     Parameters
@@ -108,6 +114,10 @@ def result_field(path: str | Path, array: str, component: str | int | None = Non
     component : str or int, optional
         Which one of a vector or tensor: its name in the file, "x", "y", "z" of a vector, or its number from 0; left out: the
         only one.
+    body : str or int, optional
+        The body whose cells alone are read, by its name in the file or its number there: of an abut run, of a mesh that abut
+        wrote, of a .vtu file with an array ``body`` or ``region`` of its cells, of the material in an .frd file; left out:
+        all. Bodies that touch have values of their own on either side.
 
     Returns
     -------
@@ -117,15 +127,18 @@ def result_field(path: str | Path, array: str, component: str | int | None = Non
     Raises
     ------
     InputError
-        For files, arrays and components that are not there.
+        For files, arrays, components and bodies that are not there.
     """
     path = checks.path(path, "result field: path")
     found = read_values(path, checks.text(array, "result field: array"))
-    if not np.isfinite(found.values).any():
-        raise InputError(f"{path}: {array!r} has no values at points")
-    return ResultField(
-        Path(path), array, _mesh(found, Path(path)), found.values[:, _number(found, component, path, array)]
-    )
+    if isinstance(body, bool) or not isinstance(body, (str, int, type(None))):
+        raise InputError(f"{path}: body: expected a name or a number, got {body!r}")
+    number = _number(found, component, path, array)
+    mesh, used = _mesh(found, Path(path), body)
+    values = found.values[used, number]
+    if not np.isfinite(values).any():
+        raise InputError(f"{path}: {array!r} has no values at points{'' if body is None else f' of body {body!r}'}")
+    return ResultField(Path(path), array, mesh, values, component, body)
 
 
 def _number(found: PointValues, component: str | int | None, path: str | Path, array: str) -> int:
@@ -147,23 +160,41 @@ def _number(found: PointValues, component: str | int | None, path: str | Path, a
     return number
 
 
-def _mesh(found: PointValues, path: Path) -> Mesh:
-    """The cells of the highest dimension that the file has; of a plane one two coordinates."""
-    dims = {CELLS[kind].dim for kind in found.cells}
+def _mesh(found: PointValues, path: Path, body: str | int | None) -> tuple[Mesh, NDArray[np.int64]]:
+    """The cells of the highest dimension that the file has, of one body where one is named, and which points of the file
+    they have; of a plane one two coordinates."""
+    cells = found.cells if body is None else _of_body(found, path, body)
+    dims = {CELLS[kind].dim for kind in cells}
     if not dims or max(dims) < 2:
         raise InputError(f"{path}: has no cells to read between points in")
     dim = max(dims)
-    points = found.points
+    cells = {kind: nodes for kind, nodes in cells.items() if CELLS[kind].dim == dim}
+    used = np.unique(np.concatenate([nodes.ravel() for nodes in cells.values()]))
+    points = found.points[used]
     if dim == 2:
         if np.ptp(points[:, 2]) > FLAT * float(np.ptp(points, axis=0).max()):
             raise InputError(
                 f"{path}: has cells of surfaces in space; values are read in solids, or in a plane of x and y"
             )
         points = points[:, :2]
-    cells = {kind: nodes for kind, nodes in found.cells.items() if CELLS[kind].dim == dim}
-    blocks = tuple(CellBlock(kind, nodes.astype(np.int32)) for kind, nodes in cells.items())
+    blocks = tuple(CellBlock(kind, np.searchsorted(used, nodes).astype(np.int32)) for kind, nodes in cells.items())
     count = sum(len(block.nodes) for block in blocks)
-    return Mesh(points, blocks, {BODY: np.arange(count)})
+    return Mesh(points, blocks, {BODY: np.arange(count)}), used
+
+
+def _of_body(found: PointValues, path: Path, body: str | int) -> dict[str, NDArray[np.int64]]:
+    """The cells of one body of a file."""
+    there = sorted({int(number) for numbers in found.groups.values() for number in np.unique(numbers)})
+    names = [name for name, number in found.bodies.items() if number in there]
+    number = found.bodies.get(body) if isinstance(body, str) else body
+    if number not in there:
+        known = ", ".join(map(repr, names)) or ", ".join(map(str, there))
+        raise InputError(
+            f"{path}: no body {body!r}{nearest(str(body), names) if names else ''}; "
+            + (f"there are {known}" if known else "the file does not tell its bodies apart")
+        )
+    chosen = {kind: nodes[found.groups[kind] == number] for kind, nodes in found.cells.items()}
+    return {kind: nodes for kind, nodes in chosen.items() if len(nodes)}
 
 
 def _corner(point: NDArray[np.float64]) -> str:

@@ -24,28 +24,30 @@ from abut.types import Array, Sparse
 
 ROUND, QUARTER = 2.0 * np.pi, 0.5 * np.pi
 REACHED = 1e-6  # of the joint's size: nearer to a limit it is there
+STOPS = ("stop", "stop2")  # what limits of the first and the second free motion are
 NEW = 1e-8  # of a row's own size: what earlier ones leave of it, from which on it says something new
 
 
 @dataclass(frozen=True)
 class Condition:
     """A function of the points of a joint that is zero, times a force as its multiplier; ``open``: the multiplier is zero in
-    its place. what: "held", "stop" or "motion"."""
+    its place. what: "held", "stop", "stop2" or "motion"; unit: what makes its multiplier the force along a motion."""
 
     what: str
     jet: Jet
     open: bool = False
+    unit: float = 1.0
 
 
 @dataclass(frozen=True)
 class Connectors:
-    """All connectors of a model. unit: stiffness by which multipliers, which are lengths, are forces; loose: by number those
-    whose free motion nothing but its limits holds."""
+    """All connectors of a model. unit: stiffness by which multipliers, which are lengths, are forces; loose: numbers of
+    those, and of their free motions, that nothing but limits hold."""
 
     model: Model
     joints: Sequence[AnyJoint]
     unit: float
-    loose: frozenset[int] = frozenset()
+    loose: frozenset[tuple[int, int]] = frozenset()
     name: str = FIELD
     constant: bool = False
 
@@ -107,25 +109,27 @@ class Connectors:
     ) -> list[Condition]:
         """In the order of the multipliers."""
         connector, result = joint.connector, [Condition("held", jet) for jet in held]
-        if connector.limits is not None:
-            length = _length(joint)
-            way, multiplier = free[0].times(length), float(multipliers[len(held)])
-            lower, upper = (length * limit for limit in connector.limits)
-            over, under = multiplier + way.value - upper, multiplier + way.value - lower
-            if number in self.loose:
-                result.append(
-                    Condition(
-                        "stop", _less(way, _stopped(connector, multiplier, float(way.value), lower, upper, joint.size))
-                    )
-                )
-            elif over > 0.0 or under < 0.0:
-                result.append(Condition("stop", _less(way, upper if over > 0.0 else lower)))
-            else:
-                result.append(Condition("stop", way, open=True))
+        for k, limits in connector.limited:
+            result.append(self._stop(number, joint, k, limits, free[k], float(multipliers[len(result)])))
         if connector.motion is not None:
             length, given = _length(joint), connector.motion * _factor(connector, time)
-            result.append(Condition("motion", _less(free[0].times(length), length * given)))
+            result.append(Condition("motion", _less(free[0].times(length), length * given), unit=length))
         return result
+
+    def _stop(
+        self, number: int, joint: AnyJoint, k: int, limits: tuple[float, float], motion: Jet, multiplier: float
+    ) -> Condition:
+        """Of the limits of free motion k."""
+        length = _length(joint, k)
+        way, what = motion.times(length), STOPS[k]
+        lower, upper = (length * limit for limit in limits)
+        over, under = multiplier + way.value - upper, multiplier + way.value - lower
+        if (number, k) in self.loose:
+            at = _stopped(joint.connector, multiplier, float(way.value), lower, upper, joint.size)
+            return Condition(what, _less(way, at), unit=length)
+        if over > 0.0 or under < 0.0:
+            return Condition(what, _less(way, upper if over > 0.0 else lower), unit=length)
+        return Condition(what, way, open=True, unit=length)
 
     def _forces(
         self, joint: AnyJoint, conditions: Sequence[Condition], free: Sequence[Jet], multipliers: Array, time: float
@@ -155,12 +159,15 @@ class Connectors:
             at = self._forces(joint, conditions, free, multipliers[own], now.time)
             force, moment = joint.resultant(-at.slope, joint.rows @ now.displacement)
             along = {
-                c.what: 0.0 if c.open else -self.unit * _length(joint) * float(m)
+                c.what: 0.0 if c.open else -self.unit * c.unit * float(m)
                 for c, m in zip(conditions, multipliers[own])
                 if c.what != "held"
             }
             motion = dict(zip(joint.connector.motions, turned))
-            found[joint.connector.name] = ConnectorResult(motion, force, moment, along.get("stop"), along.get("motion"))
+            stops = (along.get(what) for what in STOPS)
+            found[joint.connector.name] = ConnectorResult(
+                motion, force, moment, next(stops), along.get("motion"), *stops
+            )
         return found
 
     def gradient(self, limited: bool) -> tuple[Sparse, list[tuple[Connector, str]]]:
@@ -172,8 +179,9 @@ class Connectors:
             connector, taken = joint.connector, [("held", jet) for jet in held]
             if connector.motion is not None:
                 taken.append(("motion", free[0].times(_length(joint))))
-            if connector.stiffness is not None or (limited and connector.limits is not None):
-                taken.append(("limits", free[0].times(_length(joint))))
+            resisted = {0} if connector.stiffness is not None else set()
+            resisted |= {k for k, _ in connector.limited} if limited else set()
+            taken += [("limits", free[k].times(_length(joint, k))) for k in sorted(resisted)]
             slopes = np.reshape([jet.slope for _, jet in taken], (len(taken), joint.rows.shape[0]))
             rows.append(sp.csr_matrix(slopes) @ joint.rows)
             names += [(connector, what) for what, _ in taken]
@@ -208,18 +216,19 @@ class Connectors:
         return self._named(restrained.rigid.modes @ free_motions(restrained.everything, SUPPORTED))
 
     def _named(self, free: Array) -> list[str]:
-        moving = (self.joints[number].connector for number in sorted(self._moving(free)))
-        return [f"the {c.motions[0]} of connector '{c.name}'" for c in moving]
+        moving = ((self.joints[number].connector, k) for number, k in sorted(self._moving(free)))
+        return [f"the {c.motions[k]} of connector '{c.name}'" for c, k in moving]
 
-    def _moving(self, free: Array) -> frozenset[int]:
-        """The connectors that motions (dim n_points, m) move along their first free motion."""
-        found = set[int]()
+    def _moving(self, free: Array) -> frozenset[tuple[int, int]]:
+        """The connectors that motions (dim n_points, m) move along free motions, those with these."""
+        found = set[tuple[int, int]]()
         for number, joint in enumerate(self.joints):
             if joint.connector.motions and free.shape[1]:
                 _, motions = joint.functions(np.zeros(joint.rows.shape[0]))
-                moved = motions[0].times(_length(joint)).slope @ (joint.rows @ free)
-                if np.abs(moved).max() > np.sqrt(FREE) * np.abs(joint.rows @ free).max():
-                    found.add(number)
+                for k, motion in enumerate(motions):
+                    moved = motion.times(_length(joint, k)).slope @ (joint.rows @ free)
+                    if np.abs(moved).max() > np.sqrt(FREE) * np.abs(joint.rows @ free).max():
+                        found.add((number, k))
         return frozenset(found)
 
     def beside(self, restrained: Restraint) -> Connectors:
@@ -227,8 +236,8 @@ class Connectors:
         own = self.resistance(restrained.rigid.modes, limited=False)
         free = free_motions([*restrained.everything, own], SUPPORTED)
         moving = self._moving(restrained.rigid.modes @ free)
-        loose = (number for number in moving if self.joints[number].connector.limits is not None)
-        return replace(self, loose=frozenset(loose))
+        limited = {(n, k) for n, joint in enumerate(self.joints) for k, _ in joint.connector.limited}
+        return replace(self, loose=moving & limited)
 
     def require_independent(self, constraints: Constraints, factors: Array) -> None:
         """Raises SingularModelError where connectors hold what others, supports or prescribed motions hold already."""
@@ -269,9 +278,9 @@ def _to(connector: Connector) -> str:
     return f"'{connector.to}'" if connector.to else "the ground"
 
 
-def _length(joint: AnyJoint) -> float:
-    """What makes the first free motion a length."""
-    return joint.size if joint.connector.motions[0] == "turn" else 1.0
+def _length(joint: AnyJoint, k: int = 0) -> float:
+    """What makes free motion k a length."""
+    return joint.size if joint.connector.motions[k].startswith("turn") else 1.0
 
 
 def _factor(connector: Connector, time: float) -> float:

@@ -25,8 +25,8 @@ def connector_rows(solution: Solution) -> list[list[str]]:
 
 def _along(result: ConnectorResult) -> str:
     """What its stop or drive does, in words."""
-    if result.drive is not None:
-        return f"drive {result.drive:.6g}"
-    if result.stop is None:
-        return ""
-    return f"stop {result.stop:.6g}" if result.stop else "between its limits"
+    said = [] if result.drive is None else [f"drive {result.drive:.6g}"]
+    stops = [("stop", result.stop), ("stop of the second", result.stop2)]
+    said += [f"{what} {value:.6g}" for what, value in stops if value]
+    limited = any(value is not None for _, value in stops)
+    return ", ".join(said) or ("between its limits" if limited else "")

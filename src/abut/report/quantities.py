@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from abut.materials.invariants import max_shear, principal, von_mises
 from abut.materials.plastic import EQUIVALENT
+from abut.materials.prestressed import INITIAL
 from abut.mesh.mesh import Mesh
 from abut.solution import ContactResult, Solution, Step
 from abut.solution.grids import cell_error, largest_pressure
@@ -17,6 +18,7 @@ from abut.solution.grids import cell_error, largest_pressure
 Values = NDArray[np.float64]
 OF_STRESS = ("von Mises", "largest principal stress", "smallest principal stress")
 SIZE, ERROR, PLASTIC, SHEAR = "displacement", "stress error", "plastic strain", "largest shear stress"
+BEFORE = "initial von Mises"
 
 
 @dataclass(frozen=True)
@@ -57,8 +59,9 @@ def node_error(mesh: Mesh, step: Step) -> Values | None:
 
 def of_nodes(mesh: Mesh, step: Step) -> dict[str, Values]:
     """What is known at the points of a mesh beside displacement and stress, (n_points,), by its name in the picture."""
-    error, flow = node_error(mesh, step), step.remembered.get(EQUIVALENT)
-    return {name: values for name, values in ((ERROR, error), (PLASTIC, flow)) if values is not None}
+    error, flow, initial = node_error(mesh, step), step.remembered.get(EQUIVALENT), step.remembered.get(INITIAL)
+    before = None if initial is None else von_mises(initial)
+    return {name: values for name, values in ((ERROR, error), (PLASTIC, flow), (BEFORE, before)) if values is not None}
 
 
 def extremes(solution: Solution) -> dict[str, Extremes]:
@@ -128,7 +131,7 @@ def peak_steps(solution: Solution, of_bodies: Mapping[str, Extremes]) -> list[in
     """Steps that must be shown: the last, and those in which a quantity has its largest value (index into the steps)."""
     chosen = {len(solution.steps) - 1}
     for name, own in of_bodies.items():
-        if name not in (ERROR, SHEAR) and np.isfinite(own.high).any():
+        if name not in (ERROR, SHEAR, BEFORE) and np.isfinite(own.high).any():
             chosen.add(int(np.unravel_index(np.nanargmax(own.high), own.high.shape)[0]))
     for i in range(len(solution.contacts)):
         pressures = [step.contacts[i].max_pressure for step in solution.steps]

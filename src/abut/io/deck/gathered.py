@@ -9,11 +9,12 @@ from abut.io.deck.reasons import Place
 
 @dataclass(frozen=True)
 class Gathered:
-    """kind: STRAIGHT, PLANE, MEANROT or BEAM of *MPC; nodes; axis and pilot: of MEANROT, the node whose direction 1 is the
-    turn, else 0."""
+    """kind: STRAIGHT, PLANE, MEANROT, BEAM or DIST of *MPC; nodes; axis and pilot: of MEANROT, the node whose direction 1 is
+    the turn; pilot and limit: of DIST, the node whose direction 1 is held, and how much farther apart nodes may get."""
 
     kind: str
     nodes: tuple[int, ...]
     place: Place
     axis: tuple[float, ...] = ()
     pilot: int = 0
+    limit: float = 0.0

@@ -18,7 +18,8 @@ Terms = dict[tuple[int, int], float]  # coefficient by node and direction 1..3
 APART = 1e-6  # of the extent of its nodes: how far one may lie off the line or plane that it is to stay on
 TINY = 1e-12  # a coefficient that is none
 EQUAL = ("TIE", "PIN")
-BEAM = "BEAM"
+BEAM, DIST = "BEAM", "DIST"
+BETWEEN_TWO = (BEAM, DIST)
 
 
 def multipoint(card: Card, mesh: MeshCards, finite: bool) -> list[Equation]:
@@ -30,12 +31,12 @@ def multipoint(card: Card, mesh: MeshCards, finite: bool) -> list[Equation]:
         if kind in EQUAL:
             result += _equal(head, mesh)
             continue
-        if kind != BEAM and kind not in _KINDS:
+        if kind not in BETWEEN_TWO and kind not in _KINDS:
             raise head.error(
-                f"type {kind or '(none)'} is not supported; TIE, PIN, BEAM, STRAIGHT, PLANE and MEANROT are; or write "
-                "*EQUATION"
+                f"type {kind or '(none)'} is not supported; TIE, PIN, BEAM, DIST, STRAIGHT, PLANE and MEANROT are; or "
+                "write *EQUATION"
             )
-        if finite or kind == BEAM:
+        if finite or kind in BETWEEN_TWO:
             continue
         nodes, points = _members(lines, mesh)
         for terms in _KINDS[kind](head, nodes, points):
@@ -45,13 +46,16 @@ def multipoint(card: Card, mesh: MeshCards, finite: bool) -> list[Equation]:
 
 
 def gathered(card: Card, mesh: MeshCards, finite: bool) -> list[Gathered]:
-    """What one *MPC binds by products of displacements. finite: NLGEOM, without which only BEAM is read so. Raises
+    """What one *MPC binds by products of displacements. finite: NLGEOM, without which only BEAM and DIST are read so. Raises
     InputError for nodes that are not as the kind asks."""
     result: list[Gathered] = []
     for kind, lines in _groups(card):
-        if kind != BEAM and not (finite and kind in _KINDS):
+        if kind not in BETWEEN_TWO and not (finite and kind in _KINDS):
             continue
         nodes, points = _members(lines, mesh)
+        if kind == DIST:
+            result.append(_at_most(lines[0], nodes, points))
+            continue
         if kind == BEAM:
             if len(set(nodes)) != 2:
                 raise lines[0].error(f"BEAM: expected two nodes, got {len(nodes)}")
@@ -64,6 +68,16 @@ def gathered(card: Card, mesh: MeshCards, finite: bool) -> list[Gathered]:
         else:
             result.append(Gathered(kind, tuple(dict.fromkeys(nodes)), lines[0].place))
     return result
+
+
+def _at_most(line: Line, nodes: list[int], x: Vector) -> Gathered:
+    """Two nodes, each three times, that get no farther apart than the first coordinate of a last one."""
+    if len(nodes) != 7 or len(set(nodes[:3])) > 1 or len(set(nodes[3:6])) > 1 or nodes[0] == nodes[3]:
+        raise line.error("DIST: expected two nodes, each three times, and one whose first coordinate is the distance")
+    most, apart = float(x[6, 0]), float(np.linalg.norm(x[3] - x[0]))
+    if most < apart * (1.0 - APART):
+        raise line.error(f"DIST: the nodes are {apart:.6g} apart already, and may not be more than {most:.6g}")
+    return Gathered(DIST, (nodes[0], nodes[3]), line.place, pilot=nodes[6], limit=max(most - apart, 0.0))
 
 
 def _members(lines: Sequence[Line], mesh: MeshCards) -> tuple[list[int], Vector]:
@@ -189,5 +203,5 @@ def multipoint_notes(cards: Sequence[Card], finite: bool) -> list[str]:
         for card in cards
         if card.key == "MPC"
         for line in card.lines
-        if key(line.text(0)) in _KINDS or key(line.text(0)) == BEAM
+        if key(line.text(0)) in (*_KINDS, *BETWEEN_TWO)
     ]

@@ -195,20 +195,28 @@ def _local_axes(deck: Deck, named: set[int]) -> dict[int, Vector]:
 
 
 def _axes(transform: Transform, x: Vector) -> Vector:
+    """Rows (3, 3) at a point; on the axis of a cylindrical one the radial direction is the one that CalculiX takes."""
     a, b = np.array(transform.a), np.array(transform.b)
-    if transform.kind == "R":
-        third = np.cross(a, b)
-        first = a
-    else:
-        third = b - a
-        first = (x - a) - (x - a) @ third / (third @ third) * third
-    if np.linalg.norm(third) == 0.0 or np.linalg.norm(first) <= 1e-9 * np.abs(x - a).max(initial=1e-300):
+    first, third = (a, np.cross(a, b)) if transform.kind == "R" else (x - a, b - a)
+    if not third.any():
         raise DeckError(
             transform.place,
-            f"*TRANSFORM: no axes follow from the two points at {x.tolist()}; leave nodes on the axis out",
+            "*TRANSFORM: no axes follow from two points that are one, or (TYPE=R) in one direction from the origin",
         )
+    if transform.kind != "R":
+        first = first - first @ third / (third @ third) * third
+        if np.linalg.norm(first) <= 1e-9 * np.abs(x - a).max():
+            first = _across(third)
     first, third = first / np.linalg.norm(first), third / np.linalg.norm(third)
     return _clean(np.stack([first, np.cross(third, first), third]))
+
+
+def _across(along: Vector) -> Vector:
+    """A direction at right angles to one, in the plane of x and y, of y and z, or along x, the first that there is."""
+    x, y, z = along / np.linalg.norm(along)
+    if abs(x) > 1e-10:
+        return np.array([-y / x, 1.0, 0.0])
+    return np.array([0.0, -z / y, 1.0]) if abs(y) > 1e-10 else np.array([1.0, 0.0, 0.0])
 
 
 def _clean(rows: Vector) -> Vector:
