@@ -161,8 +161,8 @@ private:
     const double *deviator, *before; // of the trial stress; the history
     double start, amount = 0;
     double normal[STRAINS], turning[STRAINS]; // shifted trial stress, a unit normal once solved; by the amount
-    double size, along, excess, slope;        // of the former; of the latter, along it; the equation, minus its derivative
-    double kinematic, stiffening;             // modulus of the back stresses after an amount, secant and tangent
+    double size, along, excess, slope; // of the former; of the latter, along it; the equation, minus its derivative
+    double kinematic, stiffening;      // modulus of the back stresses after an amount, secant and tangent
 
     Flow(const J2 &law, const double *deviator, const double *before, double start)
         : law(law), deviator(deviator), before(before), start(start) {
