@@ -215,7 +215,7 @@ def test_penalty_is_replaced_with_a_note(tmp_path):
         ("*DLOAD", "*NODE\n77, 1., 1., 1.\n*BOUNDARY\n77, 3, 3, 0.1\n*DLOAD", r"\*BOUNDARY: node 77 belongs to no element"),
         ("*DLOAD", "*BOUNDARY\n18, 5, 5, 0.1\n*DLOAD", r"\*BOUNDARY: node 18 cannot turn \(direction 5\)"),
         ("*STEP\n", "*INITIAL CONDITIONS, TYPE=VELOCITY\n1, 5.\n*STEP\n", "TYPE=VELOCITY is not supported"),
-        ("*STEP\n", "*MPC\nDIST, 1, 2\n*STEP\n", "MPC: type DIST is not supported"),
+        ("*STEP\n", "*MPC\nDIST, 1, 2\n*STEP\n", "MPC: DIST: expected two nodes, each three times"),
         ("*STEP\n", "*EQUATION\n3\n1,1,1.,2,1,-1.\n*STEP\n", "3 terms announced, but 2 given"),
     ],
 )  # fmt: skip

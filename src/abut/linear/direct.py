@@ -22,7 +22,6 @@ SINGULAR = 1e-6  # relative residual above which the matrix is taken for singula
 # Of PARDISO: own settings (1); nested dissection (2); refinement steps (8); pivots perturbed below 10^-k (10), where
 # refinement makes good what a larger perturbation spoils; scaling and matching (11, 13); Bunch-Kaufman pivots, refined (21).
 SETTINGS = {1: 1, 2: 2, 8: 10, 10: 8, 11: 1, 13: 1, 18: 0, 21: 3}
-UNMATCHED = {11: 0, 13: 0}  # without scaling and matching
 
 
 @functools.lru_cache(maxsize=1)
@@ -110,7 +109,7 @@ class Factorization:
     def __init__(self, matrix: Sparse, *, quick: bool = False, symmetric: bool = True) -> None:
         self._matrix, self._symmetric = matrix, symmetric
         self._refinements = (0, SETTINGS[8]) if quick else (SETTINGS[8],)
-        self._solver = None if pardiso() is None else solver_of(symmetric, settings_for(matrix, symmetric))
+        self._solver = None if pardiso() is None else solver_of(symmetric, SETTINGS)
         if self._solver is None:
             return
         weakref.finalize(self, self._solver.free_memory, everything=True)
@@ -149,12 +148,6 @@ def solver_of(symmetric: bool, settings: dict[int, int]) -> Foreign:
     for key, value in settings.items():
         solver.iparm[key - 1] = value
     return solver
-
-
-def settings_for(matrix: Sparse, symmetric: bool) -> dict[int, int]:
-    """PARDISO looks for a matching of rows and columns with large entries, which takes as long as the rest of its analysis:
-    only where the diagonal of a symmetric matrix is not positive all through, as it is of bodies alone."""
-    return SETTINGS if not symmetric or (matrix.diagonal() <= 0.0).any() else SETTINGS | UNMATCHED
 
 
 def failures() -> type[Exception]:
@@ -286,7 +279,7 @@ def store_diagonal(matrix: Sparse) -> Sparse:
 
 
 def _solve_pardiso(matrix: Sparse, rhs: NDArray[np.float64], symmetric: bool) -> NDArray[np.float64]:
-    solver = solver_of(symmetric, settings_for(matrix, symmetric))
+    solver = solver_of(symmetric, SETTINGS)
     try:
         analyse(solver, matrix, rhs)
         solver.set_phase(23)

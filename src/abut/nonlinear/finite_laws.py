@@ -14,7 +14,6 @@ from abut.contact.laws import ConstraintFunction, Law, LawState
 from abut.contact.smooth_friction import SmoothCoulomb
 from abut.nonlinear.friction_laws import friction_laws, next_status
 from abut.nonlinear.iteration import Increment
-from abut.nonlinear.pivots import Pivots
 from abut.nonlinear.settings import NOTHING
 from abut.problem.current import bare
 from abut.problem.laws import SOFT, LawRows, at_multipliers
@@ -225,26 +224,3 @@ def nearest_kept(system: Linearised, before: State, state: State, near: float) -
         nearest = np.isfinite(clearance) & (clearance <= clearance.min() + near)
         wanted[own] = np.where(pair.of_functions(nearest), CLOSED, wanted[own])
     return state if np.array_equal(wanted, state.status) else state.with_status(wanted)
-
-
-def pivots_of(system: Linearised, increment: Increment, asked: Asked) -> Pivots:
-    """How the laws near a state change their status; what breaks them is a pressure."""
-
-    def wanted(state: State) -> Status:
-        return wanted_status(system, state, increment, asked)
-
-    def broken(state: State) -> NDArray[np.float64]:
-        return np.abs(left_open(system, laws_of(system, state.with_status(wanted(state)), asked), asked))
-
-    return Pivots(wanted, broken, _points(system))
-
-
-def _points(system: Linearised) -> NDArray[np.int64]:
-    """(n,) the first multiplier of the point that each one belongs to."""
-    result, first = np.arange(len(system)), 0
-    for pair in system.pairs:
-        if pair.frictional:
-            own = pair.index >= 0
-            result[first + pair.index[own]] = first + np.broadcast_to(pair.index[:, :1], own.shape)[own]
-        first += len(pair)
-    return result

@@ -21,8 +21,8 @@ from abut.nonlinear.finite_laws import (
     laws_of,
     left_open,
     nearest_kept,
-    pivots_of,
     status_of,
+    wanted_status,
     without_pulling,
     yielding,
 )
@@ -32,7 +32,6 @@ from abut.nonlinear.holding import not_adrift, resisting, sticking
 from abut.nonlinear.iteration import Found, Increment, advance, largest_pressure, largest_so_far, part_of, report
 from abut.nonlinear.line_search import shortened
 from abut.nonlinear.newton import End, Method, newton
-from abut.nonlinear.pivots import pivoted
 from abut.nonlinear.settings import NOTHING, Settings
 from abut.nonlinear.unsettled import circling, most_at
 from abut.problem.frame import Frame
@@ -184,8 +183,7 @@ class LargeMotion(Method[Trial]):
     def __init__(self, step: Step, begun: float) -> None:
         self._step, self.begun = step, begun
         self._closings = np.zeros(len(step.before.status), dtype=np.int64)
-        self._before, self._swapped = np.inf, False
-        self._met = list[tuple[bytes, float]]()
+        self._before, self._errors, self._swapped = np.inf, list[float](), False
 
     def advanced(self, here: Trial) -> Trial:
         """As in ``Method``."""
@@ -212,14 +210,14 @@ class LargeMotion(Method[Trial]):
         step = self._step
         if step.failed:
             return End.STALLED
-        self._met.append((there.state.status.tobytes(), there.error))
+        self._errors.append(there.error)
         self.begun = _report(step, there, self.begun)
         if _balanced(step, there, self._before):
             return End.SOLVED
-        if circling(self._met, step.settings):
+        if circling(self._errors, step.settings):
             if step.careful:
                 return End.STALLED
-            step.careful, self._met = True, []
+            step.careful, self._errors = True, []
         return None
 
 
@@ -245,9 +243,13 @@ def _following(step: Step, here: Trial, closings: NDArray[np.int64], accuracy: f
     other = exchanged(here.system, here.state, there, closings, step.settings.newton.again, solved)
     if other is not there:
         return other, True
-    if step.careful:
-        pivots = pivots_of(here.system, step.increment, step.asked)
-        there = pivoted(pivots, here.state, there, solved, step.settings.newton)
+    seen = {here.state.status.tobytes()}
+    while step.careful and len(seen) < step.settings.newton.solutions:
+        wanted = wanted_status(here.system, there, step.increment, step.asked)
+        if wanted.tobytes() in seen:
+            break
+        seen.add(wanted.tobytes())
+        there = solved(here.state.with_status(wanted))
     return there, False
 
 

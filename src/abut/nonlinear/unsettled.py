@@ -17,17 +17,14 @@ from abut.problem.problem import ContactProblem
 Vector = NDArray[np.float64]
 
 
-def circling(met: Sequence[tuple[bytes, float]], settings: Settings) -> bool:
-    """Whether iterations come back to where they were: twice in a row to a status of contact with what was left open then,
-    however many others lie between. A line search and ``pivoted`` go on from there: without it
-    ``test_a_finer_and_stiffer_contactor_does_not_go_round`` cuts a step.
-
-    met: status and error of each iteration."""
-
-    def same(one: tuple[bytes, float], other: tuple[bytes, float]) -> bool:
-        return one[0] == other[0] and abs(one[1] - other[1]) <= settings.newton.same * other[1]
-
-    return any(same(met[-1], met[k]) and same(met[-2], met[k - 1]) for k in range(1, len(met) - 2))
+def circling(errors: Sequence[float], settings: Settings) -> bool:
+    """Whether iterations come back to where they were two or three before, which has shown once all around.
+    A line search goes on from there: without it ``examples/pipe-clip`` takes 105 iterations, with it 99."""
+    for period in range(2, settings.newton.patience + 1):
+        before, last = np.array(errors[-2 * period : -period]), np.array(errors[-period:])
+        if len(before) == period and (np.abs(last - before) <= settings.newton.same * before).all():
+            return True
+    return False
 
 
 def most_at(problem: ContactProblem, forces: Vector, laws: Vector) -> str:

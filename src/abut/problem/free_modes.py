@@ -88,9 +88,13 @@ def free_mode_springs(
     Raises SingularModelError for a motion on which loads do work, and for a body that nothing touches or loads.
     """
     motions = free_motions(resistances, SUPPORTED)
-    if neutral is not None:  # what facets resist may look free: by chance they resist some mean of it hardly at all
-        resisted = neutral.motions if settled is not None else neutral.motions[:, neutral.noise > NO_WORK]
-        motions = beyond(motions, resisted if settled is None else np.concatenate([resisted, settled], axis=1))
+    if neutral is not None and settled is not None:
+        motions = beyond(motions, np.concatenate([neutral.motions, settled], axis=1))
+    elif neutral is not None and any(
+        _work(rigid, *each, loads)[1] is not None for each in _independent(rigid, motions)
+    ):
+        # what facets resist may look free: by chance they resist some mean of it, with loaded bodies, hardly at all
+        motions = beyond(motions, neutral.motions[:, neutral.noise > NO_WORK])
     notes: list[str] = []
     for groups, modes in _independent(rigid, motions):
         size, worst = _work(rigid, groups, modes, loads)
