@@ -98,7 +98,8 @@ def _check_team(model: Model) -> None:
     """Raise InputError for what processes, or PETSc on one, cannot find."""
     for wanted in model.modes:
         if isinstance(wanted, Frequencies) and (wanted.complex or wanted.coriolis or any(wanted.diameters)):
-            what = "nodal diameters other than 0" if any(wanted.diameters) else "complex frequencies"
+            named = "complex = true" if wanted.complex else "coriolis = true" if wanted.coriolis else ""
+            what = named or "nodal diameters other than 0"
             raise InputError(f"frequencies: {what}: found on one process without PETSc (solve.linear); start one only")
     from abut.parallel.launch import require_slepc
 
