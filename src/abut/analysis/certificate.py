@@ -150,7 +150,8 @@ class _Case:
         sizes = facet_sizes(pair.contactor)
         overlap = np.zeros(len(areas)) if around.overlap is None else around.overlap
         beyond = np.maximum(overlap - meant(pair, largest) / sizes, 0.0)
-        gives = max(around.bends or 0.0, 0.0 if around.edge is None else around.edge.give)
+        of_edge = 0.0 if around.edge is None else around.edge.give
+        gives = of_edge if around.bends is None else around.bends
         hidden = beyond / np.maximum(pressed_in, SHARE * gives / sizes)
         loaded = np.nanmax(np.abs(nodal) if pair.contact.kind == KINDS[2] else nodal, axis=1) > CLOSED * largest
         cover = pair.coupling.covered / areas
@@ -256,15 +257,14 @@ def _at_edge(case: _Case, edge: SharpEdge) -> Iterator[Check]:
 def _resolved(case: _Case, facets: float, between_ends: float) -> Check:
     """Thin parts touch along lines: what they press there with is a force, which no facets show as a pressure. Neither do a
     few facets between a body's edges, though its force may be right."""
-    meaning = FACETS
     if case.around.bends is None and facets <= RESOLUTION and between_ends > BETWEEN_ENDS:
         return Check(case.pair.contact.name, "resolution", between_ends, 1.0,
-            f"{meaning}: between the ends of a body, where pressure rises, its course is unknown", last=True,
+            f"{FACETS}: between the ends of a body, where pressure rises, its course is unknown", last=True,
             notice=BETWEEN_ENDS)  # fmt: skip
     if case.around.bends is None:
-        return case.check("resolution", facets, RESOLUTION, meaning, last=True)
+        return case.check("resolution", facets, RESOLUTION, FACETS, last=True)
     return Check(case.pair.contact.name, "resolution", facets, 1.0,
-        f"{meaning}: where a thin part touches along a line forces are right, the largest pressure is unknown",
+        f"{FACETS}: where a thin part touches along a line forces are right, the largest pressure is unknown",
         last=True, notice=RESOLUTION)  # fmt: skip
 
 

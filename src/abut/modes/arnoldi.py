@@ -48,9 +48,8 @@ def nearest_of_quadratic(
     moving = np.flatnonzero(mass.diagonal() > 0.0)
     pushed = mass @ np.random.default_rng(0).standard_normal(size)
     start = solve(pushed)
-    unit = float(
-        np.sqrt(abs(start @ pushed) / (start @ (mass @ start)))
-    )  # of 1 / t, so that both halves are of one size
+    # Of 1 / t, so that both halves are of one size.
+    unit = float(np.sqrt(abs(start @ pushed) / (start @ (mass @ start))))
     basis = max(2 * count + 2, BASIS)
     if basis >= 2 * min(len(moving), free):
         return _whole_quadratic(solve, turning, mass, moving, count, unit)
