@@ -206,13 +206,17 @@ def reduce(
         return space
     exists = np.full(n, space.merges) if exists is None else exists
     kept = np.flatnonzero(keep)
-    position = np.full(n, -1)
-    position[kept] = np.arange(len(kept))
     to = np.full(n, -1) if onto is None else np.where(keep, -1, onto)
     to = np.where(to >= 0, to, leaders(space, keep, ~keep & exists & (to < 0)))
     followers = np.flatnonzero(to >= 0)
-    rows, columns = np.concatenate([kept, followers]), np.concatenate([position[kept], position[to[followers]]])
-    follow = sp.csr_matrix((np.ones(len(rows)), (rows, columns)), shape=(n, len(kept)))
+    rows, columns = np.concatenate([kept, followers]), np.concatenate([kept, to[followers]])
+    return following(space, coupling, sp.csr_matrix((np.ones(len(rows)), (rows, columns)), shape=(n, n)))
+
+
+def following(space: PressureSpace, coupling: Coupling, follow: Sparse) -> PressureSpace:
+    """Coefficients (n,) as ``follow`` (n, n) times those that stay, which are the ones that have themselves."""
+    kept = np.flatnonzero(follow.diagonal() == 1.0)
+    follow = follow.tocsc()[:, kept]
     plain = (space.plain @ follow).tocsr()
     transfer = plain if space.ordinary else (space.transfer @ follow).tocsr()
     return replace(
@@ -222,7 +226,7 @@ def reduce(
         weight=transfer.T @ coupling.weight,
         node=space.node[kept],
         side=space.side[kept],
-        removed=space.removed + n - len(kept),
+        removed=space.removed + len(space) - len(kept),
     )
 
 

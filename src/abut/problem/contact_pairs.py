@@ -12,6 +12,7 @@ from abut.cells import CELLS
 from abut.contact.coupling import Couple, Coupling, couple, default_reach
 from abut.contact.flush_edges import FlushEdges, second_order
 from abut.contact.geometry import beside_others, facet_sizes, full_moments
+from abut.contact.glued_seams import Glue, along_seams, one_place
 from abut.contact.pressure_space import (
     DUAL_P1,
     PressureSpace,
@@ -67,7 +68,8 @@ def pairs(model: Model, constraints: Constraints, couple: Couple = couple) -> li
             )
             result.append(pair(model, back, constraints, couple, (sides[1], sides[0])))
     if len(result) > 1 or any(each.contactor.parts is not None for each in result):
-        kept = one_each([_shared(each) for each in result])
+        place = one_place(model.mesh.points, glue(model))
+        kept = one_each([_shared(each, place) for each in result])
         result = [
             each if keep is None else _in_space(model, each, reduce(each.space, each.coupling, keep), constraints)
             for each, keep in zip(result, kept)
@@ -76,11 +78,19 @@ def pairs(model: Model, constraints: Constraints, couple: Couple = couple) -> li
     return [replace(p, repeated=True) if tied_together and repeats(p.operator) else p for p in result]
 
 
-def _shared(contact_pair: Pair) -> Functions | None:
-    """What others at the same points need to know of a pair's multipliers; nothing of ties and methods for comparison."""
+def glue(model: Model) -> list[Glue]:
+    """Points of the sides of all ties."""
+    ties = [model.sides(contact) for contact in model.contacts if contact.kind == "tied"]
+    return [(contactor.node_ids, target.node_ids) for contactor, target in ties]
+
+
+def _shared(contact_pair: Pair, place: NDArray[np.int64]) -> Functions | None:
+    """What others at the same points need to know of a pair's multipliers; nothing of ties and methods for comparison.
+    place: of every point, the one that stands for it and those glued to it."""
     if contact_pair.tied or contact_pair.contact.method != METHODS[0] or not contact_pair.space.continuous:
         return None
-    return functions(contact_pair.space, contact_pair.contactor, contact_pair.coupling)
+    found = functions(contact_pair.space, contact_pair.contactor, contact_pair.coupling)
+    return replace(found, node=place[found.node])
 
 
 def pair(
@@ -106,7 +116,7 @@ def pair(
             gap=np.zeros(len(tie.weight)), scale=tie.weight / stiffness,
             size=size, stiffness=stiffness, index=tie.index, components=tie.components, compliance=both.compliance,
         )  # fmt: skip
-    space = without_held(space, contactor, coupling, constraints)
+    space = without_held(along_seams(space, contactor, coupling, glue(model)), contactor, coupling, constraints)
     rows = (space.transfer.T @ coupling.operator).tocsr()
     free = (rows @ constraints.free).tocsr()
     moved = row_norms(free) > NO_EFFECT * space.weight

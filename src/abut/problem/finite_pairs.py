@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from abut.contact.coupling import CouplingOptions, couple
 from abut.contact.flush_edges import second_order
 from abut.contact.geometry import facet_products, facet_sizes, full_moments, nodal_normals
+from abut.contact.glued_seams import along_seams
 from abut.contact.pressure_space import DUAL, DUAL_P1, pressure_space, resolve
 from abut.contact.rim import body_goes_on, rim
 from abut.errors import InputError
@@ -18,7 +19,7 @@ from abut.model import Contact, Model
 from abut.model.symmetry import held_directions
 from abut.problem.constraints import Constraints
 from abut.problem.contact_normals import moving_smoothing
-from abut.problem.contact_pairs import pair, reach_of, with_friction
+from abut.problem.contact_pairs import glue, pair, reach_of, with_friction
 from abut.problem.dual_functions import Mixture
 from abut.problem.held_multipliers import held, without_held
 from abut.problem.pair import Moving, Pair
@@ -57,7 +58,8 @@ def finite_pair(model: Model, contact: Contact, constraints: Constraints) -> Pai
     coupling = couple(contactor, target, degree, options, across=moving.contactor)
     whole = replace(coupling, weight=full_moments(contactor, degree).ravel(), mass=facet_products(contactor, degree))
     own = replace(contactor, turned=None) if has_own_ends(contact, contactor, True) else contactor
-    space = without_held(pressure_space(name, own, whole), contactor, whole, constraints)
+    space = along_seams(pressure_space(name, own, whole), contactor, whole, glue(model))
+    space = without_held(space, contactor, whole, constraints)
     sizes, both = facet_sizes(contactor), scales(model, contactor, target)
     size, n = float(np.median(sizes)), len(space)
     if not space.ordinary:

@@ -19,6 +19,7 @@ from abut.problem.neutral_motions import Neutral, beyond
 from abut.types import Array, Sparse
 
 NO_WORK = 1e-9  # of loads on a unit motion, over the sum of their sizes: rounding
+NO_RESISTANCE = 1e-14  # of a motion, over the strongest: rounding of squares
 TOGETHER = 1e-6  # share of a body's motion in a free one from which on it takes part
 CURE = "add a support, or a symmetry plane (normal = 0)"
 
@@ -95,6 +96,7 @@ def free_mode_springs(
     ):
         # what facets resist may look free: by chance they resist some mean of it, with loaded bodies, hardly at all
         motions = beyond(motions, neutral.motions[:, neutral.noise > NO_WORK])
+    resisted = _resisted(resistances, motions)
     notes: list[str] = []
     for groups, modes in _independent(rigid, motions):
         size, worst = _work(rigid, groups, modes, loads)
@@ -114,7 +116,7 @@ def free_mode_springs(
             for text, _ in each_motion(rigid, modes)
         ]
     if neutral is None or not neutral.motions.shape[1]:
-        return _springs(rigid, motions, constraints, stiffness, tuple(notes))
+        return replace(_springs(rigid, motions, constraints, stiffness, tuple(notes)), noise=resisted)
     _require_faint(rigid, neutral, loads)
     faint = neutral.beside(motions)
     notes += [
@@ -124,15 +126,24 @@ def free_mode_springs(
     tight, soft = (_springs(rigid, axes, constraints, stiffness, ()) for axes in (motions, faint))
     noise = float(neutral.noise.max(initial=0.0)) if faint.shape[1] else 0.0
     if settled is not None:
-        return replace(tight, gram=tight.gram + soft.gram, notes=tuple(notes), noise=noise)
+        return replace(tight, gram=tight.gram + soft.gram, notes=tuple(notes), noise=max(noise, resisted))
     return replace(
         tight,
         columns=np.concatenate([tight.columns, soft.columns]),
         stiffness=np.concatenate([tight.stiffness, (noise**2 or 1.0) * soft.stiffness]),
         gram=tight.gram + soft.gram,
         notes=tuple(notes),
-        noise=noise,
+        noise=max(noise, resisted),
     )
+
+
+def _resisted(resistances: Sequence[Array], motions: Array) -> float:
+    """Share of their forces that contact may put on motions (n_modes, m) that it hardly resists, as facets of round surfaces
+    do: the root of the resistance, which is a mean of squares, bounds it."""
+    total = sum(resistances)
+    most = float(np.linalg.eigvalsh(total).max(initial=0.0))
+    share = float(np.linalg.eigvalsh(motions.T @ total @ motions).max(initial=0.0))
+    return float(np.sqrt(share / most)) if share > NO_RESISTANCE * most else 0.0
 
 
 def _require_faint(rigid: RigidModes, neutral: Neutral, loads: Sequence[Array]) -> None:
