@@ -65,18 +65,26 @@ def least(calls: list[Callable[[], object]], repeat: int) -> list[float]:
 
 
 def nonlinear(n: int, elastic: Solids, repeat: int) -> None:
-    """Force and tangent of metal that yields at every point and of rubber, and the stiffness of the same cells, patterns
-    known before."""
+    """Force and tangent of metal that yields at every point, at the end of a step that began without strain, and of rubber,
+    and the stiffness of the same cells, patterns known before."""
     mesh = elastic.mesh
     moved = 0.01 * mesh.points * [1.0, -0.5, -0.5] + 0.002 * np.sin(3.0 * mesh.points[:, [1, 2, 0]])
     metal, rubber = Plastic(YOUNG, POISSON, 300.0, 1000.0), MooneyRivlin(c10=1.0, c01=0.5, bulk=1000.0)
-    for law, kinematics in ((metal, "small"), (metal, "finite"), (rubber, "finite")):
+    back = Plastic(YOUNG, POISSON, 300.0, 1000.0, backstresses=[(20e3, 100.0)])
+    for law, kinematics in ((metal, "small"), (metal, "finite"), (back, "small"), (back, "finite"), (rubber, "finite")):
         for rule in ("full", "b-bar"):
             bodies = Solids(mesh, {"body": law}, integration={"body": rule}, kinematics=kinematics)
-            bodies.pattern  # noqa: B018
-            linear, both = least([lambda: stiffness(elastic), lambda bodies=bodies: respond(bodies, moved)], repeat)
+            before = respond(bodies, np.zeros_like(moved)).history
+            linear, both = least(
+                [
+                    lambda: stiffness(elastic),
+                    lambda bodies=bodies, before=before: respond(bodies, moved, history=before),
+                ],
+                repeat,
+            )
+            name = "Armstrong-Frederick" if law is back else type(law).__name__
             print(
-                f"{n**3} hex8 {rule}, {type(law).__name__}, {kinematics}: stiffness {linear:.2f} s, force and tangent "
+                f"{n**3} hex8 {rule}, {name}, {kinematics}: stiffness {linear:.2f} s, force and tangent "
                 f"{both:.2f} s: {both / linear:.2f}"
             )
 

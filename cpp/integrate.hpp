@@ -229,9 +229,10 @@ private:
       kinematics.finish(tangent[0], block.data());
     else
       kinematics.complete(material.symmetric(), block.data());
+    const bool symmetric = half();
     for (std::size_t i = 0; i < n; ++i)
       if (rows.has(own[i]))
-        scatter(i);
+        symmetric ? scatter<true>(i) : scatter<false>(i);
   }
 
   // Whether only half of the block, which is symmetric, is added up.
@@ -245,11 +246,10 @@ private:
   }
 
   // The rows of node i. A symmetric block holds nodes i <= k only.
-  void scatter(std::size_t i) {
+  template <bool symmetric> void scatter(std::size_t i) {
     const std::int64_t row = results.indptr[own[i]], length = results.indptr[own[i] + 1] - row;
     const std::int32_t *begin = results.indices + row, *end = begin + length;
     double *out = results.stiffness + row * dim * dim;
-    const bool symmetric = half();
     for (std::size_t k = 0; k < n; ++k) {
       const std::int64_t position = std::lower_bound(begin, end, own[k]) - begin;
       const bool stored = !symmetric || i <= k;

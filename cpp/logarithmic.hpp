@@ -30,14 +30,14 @@ public:
   // The logarithmic strain along the principal axes, without shear.
   void principal(double *result) const {
     for (int a = 0; a < 3; ++a)
-      result[a] = std::log1p(2 * matrix[a][a]) / 2, result[3 + a] = 0;
+      result[a] = matrix[a][a] * logarithm(2 * matrix[a][a]), result[3 + a] = 0;
   }
 
   // The logarithmic strain, shear doubled.
   void strain(double *result) const {
     std::fill_n(result, STRAINS, 0.0);
     for (int a = 0; a < 3; ++a) {
-      const double own = std::log1p(2 * matrix[a][a]) / 2;
+      const double own = matrix[a][a] * logarithm(2 * matrix[a][a]);
       for (int s = 0; s < STRAINS; ++s) // transposed rotation of stresses takes strains back
         result[s] += of_strain[a][s] * doubled(s) * own;
     }
@@ -73,10 +73,17 @@ public:
     Flowing along = parts;
     stress_rotation(columns);
     turn(columns, stress, turned);
-    if (parts.flows)
-      turn(columns, parts.stress, along.stress), turn(columns, parts.normal, along.normal);
-    along.write(tangent.c);
-    finish(turned, stress, tangent);
+    if (parts.flows) {
+      turn(columns, parts.normal, along.normal);
+      if (parts.coaxial)
+        for (int s = 0; s < STRAINS; ++s)
+          along.stress[s] = parts.factor * along.normal[s];
+      else
+        turn(columns, parts.stress, along.stress);
+    }
+    along.write(tangent.c, first);
+    add_bending(turned, tangent.c);
+    write(turned, stress, tangent);
   }
 
   // The same of stress and tangent along the principal axes, of laws that are isotropic: no shear stress, shear apart.
@@ -170,11 +177,13 @@ private:
     }
   }
 
-  // ln(1 + x) / x, by its series where that has all digits.
+  // ln(1 + x) / x: of small x by the series of 2 artanh(z), z = x / (2 + x), to all digits, in a third of the time.
   static double logarithm(double x) {
-    if (std::abs(x) > NEAR)
+    if (std::abs(x) > 0.1)
       return std::log1p(x) / x;
-    return 1 - x * (1.0 / 2 - x * (1.0 / 3 - x * (1.0 / 4 - x * (1.0 / 5 - x / 6))));
+    const double over = 1 / (2 + x), z = x * over, y = z * z;
+    return 2 * over *
+           (1 + y * (1.0 / 3 + y * (1.0 / 5 + y * (1.0 / 7 + y * (1.0 / 9 + y * (1.0 / 11 + y * (1.0 / 13)))))));
   }
 
   // Twice the second divided differences, by three eigenvalues: thrice the same, of shear component s two of the first

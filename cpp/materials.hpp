@@ -35,16 +35,24 @@ struct Point {
 };
 
 // A tangent of isotropic elasticity and of flow: diagonal times the identity of symmetric tensors, spherical times that
-// of their traces, and, where it flows, the dyad of two stresses.
+// of their traces, and, where it flows, the dyad of two stresses, coaxial: the first is ``factor`` times the second.
 struct Flowing {
-  double diagonal, spherical, stress[STRAINS], normal[STRAINS];
-  bool flows = false;
+  double diagonal, spherical, stress[STRAINS], normal[STRAINS], factor;
+  bool flows = false, coaxial = false;
 
-  void write(double *c) const {
-    for (int s = 0; s < STRAINS; ++s) {
+  // c (6, 6), its rows and columns times ``scale``.
+  void write(double *c, const double (&scale)[STRAINS]) const {
+    double left[STRAINS], right[STRAINS];
+    for (int s = 0; s < STRAINS; ++s)
+      left[s] = flows ? scale[s] * stress[s] : 0, right[s] = flows ? scale[s] * normal[s] : 0;
+    for (int s = 0; s < STRAINS; ++s)
       for (int t = 0; t < STRAINS; ++t)
-        c[s * STRAINS + t] = (flows ? stress[s] * normal[t] : 0) + (s < 3 && t < 3 ? spherical : 0);
-      c[s * STRAINS + s] += s < 3 ? diagonal : diagonal / 2;
+        c[s * STRAINS + t] = left[s] * right[t];
+    for (int a = 0; a < 3; ++a) {
+      for (int b = 0; b < 3; ++b)
+        c[a * STRAINS + b] += spherical * scale[a] * scale[b];
+      c[a * STRAINS + a] += diagonal * scale[a] * scale[a];
+      c[(3 + a) * STRAINS + 3 + a] += diagonal / 2 * scale[3 + a] * scale[3 + a];
     }
   }
 };

@@ -83,7 +83,7 @@ public:
   void respond(const double *strain, const double *before, double *after, double *stress, Dense &result) const {
     Flowing tangent;
     respond(strain, before, after, stress, tangent, result.energy);
-    tangent.write(result.c);
+    tangent.write(result.c, {1, 1, 1, 1, 1, 1});
   }
 
   // The same with the parts of the tangent.
@@ -229,9 +229,10 @@ private:
       const double by = ROOT * 2 * shear / slope; // amount by strain, times the normal
       tangent.flows = true;
       tangent.diagonal = 2 * shear * (1 - bent), tangent.spherical = law.elastic.bulk - tangent.diagonal / 3;
+      tangent.coaxial = law.hardening.back.empty();
+      tangent.factor = 2 * shear * (bent - ROOT * by);
       for (int s = 0; s < STRAINS; ++s) {
-        const double to_by = bent * (along * normal[s] - turning[s]) - 2 * shear * ROOT * normal[s];
-        tangent.stress[s] = to_by * by + bent * 2 * shear * normal[s];
+        tangent.stress[s] = tangent.factor * normal[s] + bent * by * (along * normal[s] - turning[s]);
         tangent.normal[s] = normal[s];
       }
     }

@@ -9,7 +9,6 @@ from typing import cast
 import numpy as np
 import scipy.sparse as sp
 
-from abut._core import block_pattern
 from abut.bodies.continuous import pressure_response, pressure_stiffness
 from abut.bodies.evaluation import History
 from abut.bodies.integrate import integrate
@@ -120,9 +119,7 @@ def _no_values(solids: Solids) -> Array:
 
 
 def _matrix_of(solids: Solids, values: Array) -> Sparse:
-    indptr, indices = block_pattern(*solids.pattern, solids.mesh.dim)
-    if len(values) < 2**31:
-        indptr = indptr.astype(np.int32)
+    indptr, indices = solids.rows
     matrix = sp.csr_matrix((values, indices, indptr), shape=(solids.points.size,) * 2)
     matrix.has_sorted_indices = True
     return matrix

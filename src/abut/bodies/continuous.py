@@ -48,7 +48,7 @@ def pressure_response(
         bending = None
         if finite:
             foreseen = pressure - bend * _unforeseen(of, displacement, growth, since)
-            bending = of.bending(displacement, foreseen, solids.pattern)
+            bending = of.bending(displacement, foreseen, solids.pattern, solids.rows)
         slope = of.stiffness(now.rows, bend, bending)
     of_cells = np.zeros(solids.mesh.n_cells)
     if not solids.constant:

@@ -16,7 +16,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut._core import Cells, block_pattern, finite_strains, integrate_given_finite, shape_functions
+from abut._core import Cells, finite_strains, integrate_given_finite, shape_functions
 from abut.bordered import Bordered
 from abut.cells import CELLS
 from abut.materials.evaluated import Array
@@ -27,6 +27,7 @@ from abut.types import Sparse
 
 KIND, CORNERS = "tet10", 4
 Ints = NDArray[np.integer[Any]]
+Pattern = tuple[Ints, Ints]  # CSR (indptr, indices)
 
 
 @dataclass(frozen=True)
@@ -133,9 +134,9 @@ class CornerPressures:
         rest = sp.csr_matrix((self.points.size,) * 2) if beside is None else beside
         return Bordered(rest, rows.tocsr(), self.volume * bend)
 
-    def bending(self, displacement: Array, pressure: Array, pattern: tuple[Ints, Ints]) -> Sparse:
+    def bending(self, displacement: Array, pressure: Array, pattern: Pattern, rows: Pattern) -> Sparse:
         """What pressures (n_corners,) add as volumes bend with displacements, (dim n_points, dim n_points) CSR; pattern: CSR
-        (indptr, indices) of which nodes share a cell."""
+        (indptr, indices) of which nodes share a cell, rows: the same of displacements."""
         xi, weights = self.rule
         shapes, derivatives = shape_functions(CELLS[KIND].code, xi)
         linear = linear_functions(xi)
@@ -149,7 +150,7 @@ class CornerPressures:
             integrate_given_finite(
                 cells, displacement, None, strain, stress, tangent, False, None, (*pattern, values), None
             )
-        indptr, indices = block_pattern(*pattern, dim)
+        indptr, indices = rows
         matrix = sp.csr_matrix((values, indices, indptr), shape=(self.points.size,) * 2)
         matrix.has_sorted_indices = True
         return matrix

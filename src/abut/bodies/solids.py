@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from abut._core import Cells, node_pattern, shape_functions
+from abut._core import Cells, block_pattern, node_pattern, shape_functions
 from abut.bodies.corner_pressures import KIND, CornerPressures, numbered
 from abut.cells import CELLS
 from abut.materials.kernel import Kernel
@@ -49,6 +50,16 @@ class Solids:
         counts = [np.full(len(b.nodes), b.nodes.shape[1]) for b in blocks]
         start = np.concatenate([[0], np.cumsum(np.concatenate(counts))]).astype(np.int64)
         return node_pattern(len(self.points), start, np.concatenate([b.nodes.ravel() for b in blocks]).astype(np.int32))
+
+    @cached_property
+    def rows(self) -> tuple[NDArray[np.integer[Any]], NDArray[np.int32]]:
+        """CSR (indptr, indices) of matrices on displacements, which share it: a tangent brings its values only. Not to be
+        written to."""
+        indptr, indices = block_pattern(*self.pattern, self.mesh.dim)
+        if len(indices) < 2**31:
+            indptr = indptr.astype(np.int32)
+        indptr.flags.writeable = indices.flags.writeable = False
+        return indptr, indices
 
     @property
     def constant(self) -> bool:
