@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -69,10 +70,10 @@ class Removal:
                 checks.finite(getattr(self, name), f"{where}: {name}")
         if self.until <= SAME and self.since is None:
             raise InputError(f"{where}: it is not there at any time; give until or since, or leave the body out")
-        sound = 0.0 <= self.until <= self.gone <= self.back and self.until < min(self.back, END)
-        if not (sound and self.gone <= END and (self.since is None or self.since < END)):
+        back = math.inf if self.since is None else self.since
+        if not (0.0 <= self.until <= self.gone <= back and self.until < back):
             raise InputError(
-                f"{where}: expected times 0 <= until <= released <= since < {END:g}, until < since; got until "
+                f"{where}: expected times 0 <= until <= released <= since, until < since; got until "
                 f"{self.until:g}, released {self.gone:g}, since {'none' if self.since is None else f'{self.since:g}'}"
             )
 
