@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.linear.solver import Prepared
+from abut.nonlinear.friction_laws import active_laws
 from abut.nonlinear.iteration import (
     Increment,
-    active_laws,
     advance,
     broken,
     imbalance,

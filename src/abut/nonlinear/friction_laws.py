@@ -1,11 +1,11 @@
-"""The laws of contact with friction at a state, and the status that they ask for."""
+"""Complementarity, Coulomb's law and ties at a state, and the status that they ask for with friction."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.contact.laws import Complementarity, Coulomb, Tied
+from abut.contact.laws import Complementarity, Coulomb, Law, Tied
 from abut.nonlinear.iteration import Increment
 from abut.nonlinear.settings import NOTHING
 from abut.problem.laws import LawRows, at_multipliers, giving
@@ -17,29 +17,25 @@ Vector = NDArray[np.float64]
 Status = NDArray[np.int8]
 
 
-def friction_laws(system: Linearised, state: State) -> list[LawRows]:
+def active_laws(system: Linearised, state: State) -> list[LawRows]:
     """The laws of all pairs with the status as it is."""
     parts = (system.gap(state), state.multipliers, state.closed, state.slipping)
-    return [
-        giving(
-            pair,
-            at_multipliers(pair, _law(pair, system), gap, multipliers, closed, slipping if pair.frictional else None),
-        )
-        for pair, gap, multipliers, closed, slipping in zip(system.pairs, *map(system.split, parts))
-    ]
+    return [at_status(system, *part) for part in zip(system.pairs, *map(system.split, parts))]
 
 
-def _law(pair: Pair, system: Linearised) -> Tied | Coulomb | Complementarity:
-    if pair.tied:
-        return Tied()
-    if not pair.frictional:
-        return Complementarity(pair.stiffness)
-    return coulomb(pair, system)
+def friction_laws(system: Linearised, state: State) -> list[LawRows]:
+    """The same for one iteration, unique where friction repeats itself: ``giving``."""
+    return [giving(*part) for part in zip(system.pairs, active_laws(system, state))]
 
 
-def coulomb(pair: Pair, system: Linearised) -> Coulomb:
-    """The law of a pair with friction."""
-    return Coulomb(pair.stiffness, pair.friction(system.factors))
+def at_status(
+    system: Linearised, pair: Pair, gap: Vector, multipliers: Vector, closed: NDArray[np.bool_], slipping: NDArray[np.bool_]
+) -> LawRows:  # fmt: skip
+    """The law of one pair with the status as it is; gap, multipliers, closed, slipping: (n,)."""
+    law: Law = Tied() if pair.tied else Complementarity(pair.stiffness)
+    if pair.frictional:
+        law = Coulomb(pair.stiffness, pair.friction(system.factors))
+    return at_multipliers(pair, law, gap, multipliers, closed, slipping if pair.frictional else None)
 
 
 def next_status(system: Linearised, state: State, increment: Increment, gap: Vector | None = None) -> Status:
