@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.linear.solver import Prepared
-from abut.nonlinear.friction_laws import active_laws
 from abut.nonlinear.iteration import (
     Increment,
     advance,
@@ -20,6 +19,7 @@ from abut.nonlinear.iteration import (
     next_active,
     report,
 )
+from abut.nonlinear.laws import active_laws
 from abut.nonlinear.settings import Settings
 from abut.solution import Iteration
 from abut.solution.state import State

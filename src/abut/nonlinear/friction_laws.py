@@ -1,41 +1,18 @@
-"""Complementarity, Coulomb's law and ties at a state, and the status that they ask for with friction."""
+"""The status that complementarity, Coulomb's law and ties ask for."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.contact.laws import Complementarity, Coulomb, Law, Tied
 from abut.nonlinear.iteration import Increment
 from abut.nonlinear.settings import NOTHING
-from abut.problem.laws import LawRows, at_multipliers, giving
 from abut.problem.linearised import Linearised
 from abut.problem.pair import Pair
 from abut.solution.state import CLOSED, OPEN, SLIPPING, State
 
 Vector = NDArray[np.float64]
 Status = NDArray[np.int8]
-
-
-def active_laws(system: Linearised, state: State) -> list[LawRows]:
-    """The laws of all pairs with the status as it is."""
-    parts = (system.gap(state), state.multipliers, state.closed, state.slipping)
-    return [at_status(system, *part) for part in zip(system.pairs, *map(system.split, parts))]
-
-
-def friction_laws(system: Linearised, state: State) -> list[LawRows]:
-    """The same for one iteration, unique where friction repeats itself: ``giving``."""
-    return [giving(*part) for part in zip(system.pairs, active_laws(system, state))]
-
-
-def at_status(
-    system: Linearised, pair: Pair, gap: Vector, multipliers: Vector, closed: NDArray[np.bool_], slipping: NDArray[np.bool_]
-) -> LawRows:  # fmt: skip
-    """The law of one pair with the status as it is; gap, multipliers, closed, slipping: (n,)."""
-    law: Law = Tied() if pair.tied else Complementarity(pair.stiffness)
-    if pair.frictional:
-        law = Coulomb(pair.stiffness, pair.friction(system.factors))
-    return at_multipliers(pair, law, gap, multipliers, closed, slipping if pair.frictional else None)
 
 
 def next_status(system: Linearised, state: State, increment: Increment, gap: Vector | None = None) -> Status:

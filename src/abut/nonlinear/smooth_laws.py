@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 from abut.contact.laws import ConstraintFunction
 from abut.errors import SingularModelError
 from abut.linear.solver import Prepared
-from abut.nonlinear.finite_laws import Asked
 from abut.nonlinear.forcing import forcing
-from abut.nonlinear.friction_laws import active_laws, at_status, friction_laws, next_status
+from abut.nonlinear.friction_laws import next_status
 from abut.nonlinear.iteration import (
     Found,
     Increment,
@@ -25,6 +24,7 @@ from abut.nonlinear.iteration import (
     part_of,
     report,
 )
+from abut.nonlinear.laws import Asked, active_laws, at_status, friction_laws
 from abut.nonlinear.line_search import shortened
 from abut.nonlinear.newton import End, Method, newton
 from abut.problem.laws import LawRows, at_multipliers, in_the_mean
