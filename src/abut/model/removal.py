@@ -17,12 +17,12 @@ from abut.mesh.mesh import Mesh
 from abut.model.body_forces import BodyForce, Centrifugal, Gravity, Load
 from abut.model.conditions import Amplitude, History
 from abut.model.contact import Contact
+from abut.model.hold import END
 from abut.model.loads import Force, NodalForce, Pressure, Traction
 from abut.model.penetration import Penetration
 from abut.model.preload import Preload
 from abut.model.step_ends import SAME
 
-END = 1.0  # of time
 RAMP = ((0.0, 0.0), (END, 1.0))
 
 
