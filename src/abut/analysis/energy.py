@@ -26,8 +26,9 @@ class Acting:
     of what holds the points; pressing, rubbing: of pressures and ties, and of tractions; stored: strain energy; free:
     (n_free,) displacements; follows: (dim n_points, n_free) how the points go with them there; residual: largest force left
     on these; drag: (n_free,) that of a step which it leads, None without; flowed: work of plastic flow so far; time: when
-    that is; tractions: (n_tangential,) of each pair. stored is not a number where the work of stresses is what is stored:
-    where a material does not tell its energy, and at small displacements."""
+    that is; tractions: (n_tangential,) of each pair, where these are the same at all states, so not at large displacements.
+    stored is not a number where the work of stresses is what is stored: where a material does not tell its energy, and at
+    small displacements."""
 
     displacement: Vector
     internal: Vector
@@ -90,7 +91,7 @@ def energy(
     internal, way = work("internal"), np.abs(step)
     told = large and bool(np.isfinite(now.stored))
     stored = now.stored - before.stored if told else internal - plastic
-    growing, closing = _of_slips(balance.pairs, before, now, slips)
+    growing, closing = (0.0, 0.0) if large else _of_slips(balance.pairs, before, now, slips)
     stepping = (internal - stored - plastic) - (work("rubbing") + friction) if large else growing
     rounding = (np.abs(balance.diagonal) * np.abs(now.free)) @ way
     mean = 0.5 * np.abs(before.internal + now.internal)
@@ -101,7 +102,7 @@ def energy(
     return Energy(
         loads=work("loads"),
         supports=supports,
-        contact=work("pressing") + (0.0 if large else closing),
+        contact=work("pressing") + closing,
         stored=stored,
         friction=friction,
         stepping=stepping,
