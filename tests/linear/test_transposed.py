@@ -19,7 +19,7 @@ from abut.linear.iterative import Iterative
 from abut.linear.saddle_point import SaddlePoint
 from abut.linear.solver import Transposable
 from abut.linear.static_condensation import condense
-from abut.nonlinear.iteration import active_laws
+from abut.nonlinear.laws import active_laws
 from abut.problem.laws import at_multipliers, in_the_mean
 from abut.problem.linearised import Linearised, Rows
 from abut.problem.problem import ContactProblem

@@ -16,9 +16,10 @@ from abut.contact.slip_points import SlipPoints, slip_now
 from abut.errors import InputError
 from abut.linear.choice import Direct
 from abut.mesh import make
-from abut.nonlinear.finite_laws import Asked, laws_of
+from abut.nonlinear.finite_laws import laws_of
 from abut.nonlinear.iteration import advance
 from abut.nonlinear.large_steps import extrapolated
+from abut.nonlinear.laws import Asked
 from abut.problem.frame import PairFrame
 from abut.solution import Solution
 from abut.solution.state import CLOSED, OPEN, State

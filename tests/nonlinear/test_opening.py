@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from abut.nonlinear.finite_laws import Asked, following_status, without_pulling
+from abut.nonlinear.finite_laws import following_status, without_pulling
 from abut.nonlinear.iteration import Increment
+from abut.nonlinear.laws import Asked
 from abut.nonlinear.settings import DEFAULT
 from abut.problem.linearised import Linearised
 from abut.solution.state import CLOSED, OPEN, State

@@ -19,7 +19,8 @@ from abut.mesh import make
 from abut.nonlinear import active_set
 from abut.nonlinear.active_set import solve_step
 from abut.nonlinear.exact import solve_set
-from abut.nonlinear.iteration import Found, Increment, active_laws
+from abut.nonlinear.iteration import Found, Increment
+from abut.nonlinear.laws import active_laws
 from abut.nonlinear.search import Log, search
 from abut.nonlinear.settings import DEFAULT
 from abut.problem.problem import ContactProblem, Problem

@@ -136,7 +136,7 @@ def test_two_bolts_one_after_the_other():
         ({"force": 1.0}, "either body or surface"),
         ({"body": "bar", "force": 1.0, "point": (0, 0, 1)}, "point and normal go together"),
         ({"body": "bar", "shortening": 1.0, "lock": 0.5}, "lock goes with force"),
-        ({"body": "bar", "force": 1.0, "lock": 1.0}, "between 0 and 1"),
+        ({"body": "bar", "force": 1.0, "lock": 1.0}, "before 1, the end of the run"),
         ({"body": "rod", "force": 1.0}, "no body named 'rod'"),
         ({**PLANE, "point": (0, 0, 40), "force": 1.0}, "goes through no cells"),
         ({"surface": "bar.bottom", "force": 1.0}, "outside of a body"),

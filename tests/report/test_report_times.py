@@ -21,7 +21,7 @@ def test_times_up_to_the_end(end: float, label: str) -> None:
     )
     supports = [abut.Support("low.bottom", x=0, y=0, z=0), abut.Support("up.top", x=0, y=0, z=-0.01)]
     solids = [abut.Solid(body, abut.LinearElastic(1000.0, 0.0)) for body in ("low", "up")]
-    options = abut.SolveOptions(times=(0.5, 1.0), end=end)
+    options = abut.SolveOptions(times=(0.5 * end, end), end=end)
     probe = abut.Probe("middle", at=(0.5, 0.5, 1.5))
     contact = abut.Contact("up.bottom", "low.top", "pair")
     solution = abut.solve(abut.Model(mesh, solids, supports, contacts=[contact], probes=[probe], solve=options))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from abut.analysis.edge_load import edge_load
 from abut.analysis.faceting import faceting
-from abut.analysis.oscillation import CLOSED, WHOLE, oscillation
+from abut.analysis.oscillation import CLOSED, oscillation
 from abut.analysis.overlap import meant
 from abut.analysis.peaks import Peaks, peaks_of
 from abut.analysis.pressure_error import pressure_error
@@ -23,7 +23,7 @@ from abut.contact.nodal_recovery import at_points
 from abut.contact.rim import rim
 from abut.contact.sides import words
 from abut.model.contact import KINDS
-from abut.problem.pair import Pair
+from abut.problem.pair import WHOLE, Pair
 from abut.solution import Check
 
 BALANCE = 1e-9  # of forces, over the contact force; of moments, over force times the contactor's extent

@@ -194,18 +194,18 @@ def modes(
     Raises InputError, ConvergenceError and SingularModelError."""
     model = assembled.problem.model
     there = {time: Reached.of(assembled, *end, by) for time, end in ends.items()}
-    if any(wanted.time == 0.0 for wanted in model.modes):
+    if any(wanted.share == 0.0 for wanted in model.modes):
         there[0.0] = Reached.at_start(assembled, by)
     found: list[tuple[Frequencies | Buckling, ModesResult]] = []
     for wanted in model.modes:
-        if isinstance(wanted, (Frequencies, Buckling)) and wanted.time in there:
-            found += [(wanted, result) for result in _found(there[wanted.time].as_in(wanted), wanted)]
+        if isinstance(wanted, (Frequencies, Buckling)) and wanted.share in there:
+            found += [(wanted, result) for result in _found(there[wanted.share].as_in(wanted), wanted)]
     answers = []
     for wanted in model.modes:
-        if isinstance(wanted, (Harmonic, Transient)) and wanted.time in there:
+        if isinstance(wanted, (Harmonic, Transient)) and wanted.share in there:
             made_of, result = next((w, r) for w, r in found if basis_of(w, wanted) and not r.diameter)
             assert isinstance(made_of, Frequencies)
-            at = there[wanted.time].as_in(made_of)
+            at = there[wanted.share].as_in(made_of)
             answers.append(respond(model, at.near, at.tight(made_of), result, places, wanted))
     return tuple(result for _, result in found), tuple(answers)
 

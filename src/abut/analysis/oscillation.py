@@ -10,10 +10,9 @@ from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.geometry import by_kind, split_at_creases
 from abut.contact.pressure_space import DUAL, DUAL_P1
 from abut.mesh.surface import Surface
-from abut.problem.pair import Pair
+from abut.problem.pair import WHOLE, Pair
 
 CLOSED = 1e-3  # pressure over the largest from which on a node counts as in contact
-WHOLE = 1e-2  # a facet covered to within this share is fully covered
 
 
 def oscillation(

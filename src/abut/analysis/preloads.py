@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from abut.model import Model
 from abut.model.preload import Section, sections
-from abut.problem.preloads import SAME, LockedPreloads
+from abut.model.step_ends import SAME
+from abut.problem.preloads import LockedPreloads
 from abut.problem.sections import given_force, shortening_row
 from abut.solution import PreloadResult
 from abut.solution.state import State

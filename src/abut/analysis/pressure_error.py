@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.analysis.oscillation import CLOSED, WHOLE, Graph
+from abut.analysis.oscillation import CLOSED, Graph
 from abut.contact.geometry import side_normals
-from abut.problem.pair import Pair
+from abut.contact.nodal_recovery import ON_AXIS
+from abut.problem.pair import WHOLE, Pair
 
 AVERAGED = 1.0 / 6.0  # of half the second difference: averages, theory (P17)
 CHANGE = 0.4  # of the change of that from node to node, theory (P17)
 ALTERNATING = 0.75  # of what changes its sign from node to node, theory (P17)
 STRESS = 0.4  # of the difference from the stress, theory (P17)
-ON_AXIS = 1e-9  # radius over the contactor's largest
 EVEN = 1e-6  # smallest over largest eigenvalue of a star of nodes' second moments from which on it has an extent
 TRIFLE = 1e-6  # stress over pressure from which down a body does not deform
 

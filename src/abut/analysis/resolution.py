@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.analysis.oscillation import CLOSED, WHOLE, Graph
+from abut.analysis.oscillation import CLOSED, Graph
 from abut.contact.geometry import beside_others, facet_sizes, split_at_creases
 from abut.contact.rim import goes_on, rim
-from abut.problem.pair import Pair
+from abut.problem.pair import WHOLE, Pair
 
 MOSTLY = 0.5  # covered share of a point from which on it could carry pressure
 FARTHEST = 10  # facets beyond which nobody counts

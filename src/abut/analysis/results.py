@@ -14,7 +14,6 @@ from abut.analysis.contact_results import PairState, contact_result
 from abut.analysis.covered import covered, whole_supports
 from abut.analysis.energy import Acting, energy, pressing, tractions
 from abut.analysis.faceting import free_axes
-from abut.analysis.finite_energy import FiniteActing, finite_energy
 from abut.analysis.flow import flow, remembered
 from abut.analysis.interpolation_error import Mended
 from abut.analysis.known_stress import known_stress
@@ -62,7 +61,7 @@ from abut.problem.terms import Motion
 from abut.solution import ContactResult, Energy, Flips, Flow, PreloadResult, RigidResult, Step
 from abut.solution.state import State
 
-Acted = Acting | FiniteActing | None  # what acts at the end of a step
+Acted = Acting | None  # what acts at the end of a step
 
 
 @dataclass(frozen=True)
@@ -128,7 +127,7 @@ def step_result(
     contacts = _contacts(end, attempt, before, averages(solids, near), shown)
     known = known_stress(model, points, moved, state.time, change, list(zip(balance.pairs, contacts)))
     values = recovered(solids, points, own, known, None if shown is None else shown.fits, change)
-    acting, work = (_finite_energy if model.finite else _energy)(end, attempt, acted, contacts, before)
+    acting, work = _energy(end, attempt, acted, contacts, before)
     strained = beyond_rounding(end.internal, balance, end.displacement)
     pushes = [float(np.abs(pair.rows.T @ p).sum()) / 2.0 for pair, p in zip(balance.pairs, end.pressures)]
     step = Step(
@@ -218,46 +217,28 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
 def _energy(
     end: _End, attempt: Attempt, acted: Acted, contacts: Sequence[ContactResult], steps: Sequence[Step]
 ) -> tuple[Acted, Energy | None]:
-    """What acts at the end of a step, and the energy over it; None without friction and where it did not converge."""
-    balance, constraints = end.balance, end.problem.constraints
-    if not attempt.converged or not (end.flow or any(pair.frictional for pair in balance.pairs)):
+    """What acts at the end of a step, and the energy over it; None where it did not converge, and at small displacements
+    where nothing takes any."""
+    problem, balance, state, finite = end.problem, end.balance, end.state, end.problem.model.finite
+    takes = finite or end.flow is not None or any(pair.frictional for pair in balance.pairs)
+    if not attempt.converged or not takes:
         return None, None
+    outset, factors = (weights(problem.model.histories, time) for time in (0.0, state.time))
+    pressed = pressing(balance.pairs, end.pressures, len(end.internal))
     largest = max(float(np.abs(force).max(initial=0.0)) for force in (end.internal, end.loads))
+    least = max(attempt.iterations[-1].residual, DEFAULT.newton.balanced)
     now = Acting(
-        end.displacement, constraints.prescribed @ balance.factors, end.internal, end.loads + end.held,
-        end.reaction - end.held, _pressed(end), tractions(balance.pairs, end.pressures), end.state.unknowns,
-        largest * max(attempt.iterations[-1].residual, DEFAULT.newton.balanced), end.flow.work if end.flow else 0.0,
-    )  # fmt: skip
-    if not isinstance(acted, Acting):
-        acted = Acting.none(constraints.prescribed @ weights(end.problem.model.histories, 0.0), balance)
-    slips = [end.state.history.contact(pair.contact.name).slips for pair in balance.pairs]
-    return now, energy(balance, acted, now, slips, contacts, _largest_size(steps))
-
-
-def _pressed(end: _End) -> NDArray[np.float64]:
-    """Nodal forces of all pressures and ties, (dim n_points,)."""
-    return pressing(end.balance.pairs, end.pressures) if end.balance.pairs else np.zeros_like(end.internal)
-
-
-def _finite_energy(
-    end: _End, attempt: Attempt, acted: Acted, contacts: Sequence[ContactResult], steps: Sequence[Step]
-) -> tuple[Acted, Energy | None]:
-    """The same with finite kinematics, friction or not; None where it did not converge."""
-    if not attempt.converged:
-        return None, None
-    problem, balance, state = end.problem, end.balance, end.state
-    histories = problem.model.histories
-    pressed = _pressed(end)
-    left = state.largest.force * max(attempt.iterations[-1].residual, DEFAULT.newton.balanced)
-    if not isinstance(acted, FiniteActing):
-        acted = FiniteActing.none(problem.constraints.near(np.zeros_like(state.unknowns), weights(histories, 0.0)).free)
-    now = FiniteActing(
         end.displacement, end.internal, end.loads + end.held, end.reaction - end.held, pressed,
         end.internal - end.loads - end.reaction - pressed, balance.energy, state.unknowns,
-        problem.constraints.near(state.unknowns, weights(histories, state.time)).free, left,
-        state.history.drag, end.flow.work if end.flow else 0.0, state.time,
+        problem.constraints.near(state.unknowns, factors).free, (state.largest.force if finite else largest) * least,
+        state.history.drag, end.flow.work if end.flow else 0.0, state.time, tractions(balance.pairs, end.pressures),
     )  # fmt: skip
-    return now, finite_energy(problem, acted, now, balance.diagonal, contacts, _largest_size(steps))
+    if acted is None:
+        rest = np.zeros_like(state.unknowns)
+        given = np.zeros_like(end.internal) if finite else problem.constraints.displacement(rest, outset)
+        acted = Acting.none(given, problem.constraints.near(rest, outset).free)
+    slips = [state.history.contact(pair.contact.name).slips for pair in balance.pairs]
+    return now, energy(problem, balance, acted, now, slips, contacts, _largest_size(steps))
 
 
 def _landed(state: State) -> tuple[float, float] | None:
@@ -318,7 +299,8 @@ def _contacts(
     beside = max([float(np.abs(p).max(initial=0.0)) for p in largest] + references + [0.0])
     around, loaded = [], loaded_points(model)
     others = covered_elsewhere(balance.pairs, end.pressures)
-    forces = Forces(end.internal, np.abs(end.loads) + np.abs(_pressed(end)))
+    pressed = pressing(end.balance.pairs, end.pressures, len(end.internal))
+    forces = Forces(end.internal, np.abs(end.loads) + np.abs(pressed))
     for pair, pressed, reference, elsewhere, support in zip(
         balance.pairs, end.pressures, references, others, end.supports
     ):

@@ -252,7 +252,7 @@ class Run:
         if attempt.converged:
             began = self.assembled.problem.start() if self.ended is None else self.ended[1].state
             self.ended = began, replace(attempt, balance=None)
-            at = [wanted.time for wanted in self.model.modes if abs(wanted.time - attempt.time) <= SAME]
+            at = [wanted.share for wanted in self.model.modes if abs(wanted.share - attempt.time) <= SAME]
             self.looked |= dict.fromkeys(at, self.ended)
         return replace(step, probes=tuple(read(place, step) for place in self.places))
 

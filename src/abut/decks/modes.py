@@ -39,9 +39,10 @@ def _frequencies(deck: Deck, groups: Groups, contacts: Sequence[str], asked: Ask
     return replace(wanted, diameters=asked.diameters, sectors=deck.cyclic[0].sectors, side=side)
 
 
-def time_of(deck: Deck, asked: Asked) -> float:
-    """Of the state that a step is about."""
-    return ends(deck)[max(asked.after, 1) - 1] if asked.loaded else 0.0
+def time_of(deck: Deck, asked: Asked) -> float | None:
+    """Of the state that a step is about; None for the end."""
+    share = ends(deck)[max(asked.after, 1) - 1] if asked.loaded else 0.0
+    return None if share == 1.0 else share
 
 
 def _check_unloaded(deck: Deck, asked: Asked) -> None:

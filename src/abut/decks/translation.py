@@ -150,7 +150,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
         mesh, solids=solids, contacts=contacts, rigid=rigid, couplings=held_by(deck, bound, prescribed.names), plane=plane,
         **{name: value for name, value in vars(prescribed).items() if name != "names"},
         kinematics="finite" if finite else "small", modes=vibrations, removals=tuple(removals(deck, parts)),
-        solve=replace(_steps(deck, finite), end=period(deck)),
+        solve=replace(_steps(deck, finite), end=period(deck)), times_in_shares=True,
     )  # fmt: skip
     model, output = with_tables(model, deck, asked, notes), output_options(model, deck, notes)
     return Translation(model, tuple(notes), deck.ignored, laws, output)

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from abut.analysis.statistics import LOADED
 from abut.cells import CELLS
 from abut.contact.contactor_choice import FINER, Choice
 from abut.contact.coupling import surface_degree
@@ -22,7 +23,6 @@ from abut.solution.stress_error import ContactStressError
 
 SECOND = " (second pass)"
 EITHER = Choice(1, "alike", False)  # whatever else speaks for the present contactor
-LOADED = 1e-3  # pressure over the largest
 OF_NARROW = {"overlap", "oscillation", "largest pressure"}  # lines that the mesh does not mend at a sharp edge
 UNSETTLED = {"complementarity", "friction cone", "slip direction", "sticking", "friction work"}
 SINGULAR_HINT = "check the units of Young's moduli, loads and mesh, and constrain every body by supports of its own"

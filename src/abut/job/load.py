@@ -200,6 +200,7 @@ def _model(file: JobFile, folder: Path, refine: int, named: Named) -> tuple[Mode
         ],
         contacts=[*resolved.contacts, *stopped.contacts],
         solve=SolveOptions(**file.solve.model_dump()),
+        times_in_shares=True,
         equations=[
             *(_equation(equation, f"equations[{i}]") for i, equation in enumerate(file.equations)),
             *sectors.equations,

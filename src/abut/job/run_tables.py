@@ -15,11 +15,11 @@ from abut.model.solve_options import LINEAR, SolveOptions
 from abut.model.step_choice import WORDS as STEPS
 from abut.output.options import COMPRESSIONS, FAST, FIELDS, FORMATS, USUAL, VTU
 
-FREQUENCIES = table_of(Frequencies, {"diameters": list[int], "time": Time, "open": list[str]})
-BUCKLING = table_of(Buckling, {"time": Time})
+FREQUENCIES = table_of(Frequencies, {"diameters": list[int], "time": Time | None, "open": list[str]})
+BUCKLING = table_of(Buckling, {"time": Time | None})
 LOADS = list[Annotated[Table, LOAD]]
 NUMBERS = list[Number]
-VIBRATING = {"damping": Number | NUMBERS, "rayleigh": NUMBERS, "fields": NUMBERS, "time": Time, "loads": LOADS}
+VIBRATING = {"damping": Number | NUMBERS, "rayleigh": NUMBERS, "fields": NUMBERS, "time": Time | None, "loads": LOADS}
 HARMONIC = table_of(Harmonic, {**VIBRATING, "between": NUMBERS, "base": NUMBERS | None, "imaginary": LOADS})
 TRANSIENT = table_of(Transient, VIBRATING)
 SOLVE = table_of(

@@ -14,7 +14,7 @@ from abut.contact.geometry import facet_products, full_moments
 from abut.errors import SingularModelError
 from abut.linear.bodies_now import bodies_now
 from abut.linear.dense import UNBALANCED, UNBALANCED_LOADS
-from abut.linear.foresight import Predict, foresight
+from abut.linear.foresight import LOOSE, Predict, foresight
 from abut.linear.interface_conditions import Conditions, conditions
 from abut.linear.krylov import fgmres
 from abut.linear.loose_motions import Loose, loose
@@ -28,7 +28,6 @@ from abut.problem.problem import ContactProblem, Problem
 
 RESTART, CYCLES = 100, 3
 RESPONSE = 0.03
-LOOSE = 1e-9  # resistance of contact to a motion, over the largest, below which it is none: the motion rests
 FAILED = "multigrid does not converge on this model"
 COVERED = 0.01  # least share of a function that counts as covered
 

@@ -32,7 +32,7 @@ class Amplitude:
     Parameters
     ----------
     points : sequence of (float, float)
-        Pairs (time, factor), times increasing. Time runs from 0 to 1 over the load steps.
+        Pairs (time, factor), times increasing, from 0 to the end of the run: ``SolveOptions.end``, 1 by default.
 
     Raises
     ------
@@ -61,12 +61,8 @@ class Amplitude:
         for (before, _), (after, _) in pairwise(points):
             if not before < after:
                 raise InputError(f"amplitude: times must increase, but {after:g} follows {before:g}")
-        first, last = points[0][0], points[-1][0]
-        if first < -SLIGHTLY or last > 1.0 + SLIGHTLY:
-            raise InputError(
-                f"amplitude: time runs from 0 to 1 over all load steps, but there is a point at "
-                f"{last if last > 1.0 else first:g}; divide the times by that of the end (in a job file give solve.end)"
-            )
+        if points[0][0] < -SLIGHTLY:
+            raise InputError(f"amplitude: time runs from 0 on, but there is a point at {points[0][0]:g}; begin with 0")
         object.__setattr__(self, "points", points)
 
     def __call__(self, time: float) -> float:

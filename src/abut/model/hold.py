@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -83,11 +84,13 @@ class Hold:
                 checks.finite(getattr(self, name), f"{where}: {name}")
         if self.released is not None and self.until is None:
             raise InputError(f"{where}: released goes with until; give the time up to which it acts")
-        last = END if self.until is None else self.until
-        if not (0.0 <= self.since < self.arrival <= last and (self.until is None or last < self.end_of_release <= END)):
+        last, gone = (math.inf if time is None else time for time in (self.until, self.released))
+        reached = last if self.reached is None else self.reached
+        if not (0.0 <= self.since < reached <= last and (self.until is None or last < gone)):
+            times = ("the end" if time == math.inf else f"{time:g}" for time in (reached, last, gone))
             raise InputError(
-                f"{where}: expected times 0 <= since < reached <= until < released <= {END:g}, got since {self.since:g}, "
-                f"reached {self.arrival:g}, until {last:g}, released {self.end_of_release:g}"
+                f"{where}: expected times 0 <= since < reached <= until < released, got since {self.since:g}, "
+                "reached {}, until {}, released {}".format(*times)
             )
 
     @property

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import chain
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,6 +41,7 @@ from abut.model.coupling import Coupling, check_couplings, moving_points
 from abut.model.hold import Hold, check_holds
 from abut.model.integrations import Integrations
 from abut.model.kinematics import check_finite, check_kinematics
+from abut.model.lists import LISTS
 from abut.model.penetration import Penetration, check_penetrations
 from abut.model.physics import TEMPERATURE, Physics, dofs_of
 from abut.model.preload import Preload, cut_sections
@@ -55,15 +56,10 @@ from abut.model.solve_options import SolveOptions
 from abut.model.spring import Spring, check_springs
 from abut.model.step_ends import with_corners
 from abut.model.symmetry import held_directions
+from abut.model.times import in_shares, of_ends
 from abut.model.turned_sides import smooth_sides, turned_sides
 
 PLANES = ("strain", "stress", "axisymmetric")
-RECORDS: dict[str, tuple[type, ...]] = {  # what the lists of a model are of
-    "solids": (Solid,), "supports": (Support,), "loads": get_args(Load), "contacts": (Contact,), "equations": (Equation,),
-    "rigid": (Rigid,), "probes": (Probe,), "rotations": (Rotation,), "couplings": (Coupling,), "preloads": (Preload,),
-    "springs": (Spring,), "holds": (Hold,), "penetrations": (Penetration,), "modes": get_args(Wanted),
-    "removals": (Removal,), "connectors": (Connector,),
-}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -112,8 +108,9 @@ class Model:
         Terms of one's own in the balance, with rates if wanted; fields beside displacements, on one process. By direct
         solvers.
     modes, removals, connectors : sequences of Frequencies, Buckling, Harmonic and Transient, of Removal, of Connector
-        What is found about the state at the end of the last step, on one process; bodies that go, and may come back;
-        joints of rigid bodies and couplings.
+        What is found about loaded states; bodies that go, and may come back; joints of rigid bodies and couplings.
+    times_in_shares : bool
+        Whether times are shares of ``solve.end``, from 0 to 1, as a model keeps them; else they run from 0 to that.
 
     Raises
     ------
@@ -160,12 +157,16 @@ class Model:
     modes: Sequence[Wanted] = ()
     removals: Sequence[Removal] = ()
     connectors: Sequence[Connector] = ()
+    times_in_shares: bool = False
 
     def __post_init__(self) -> None:
         checks.instance(self.mesh, MeshRecord, "model: mesh", "a mesh (abut.Mesh)")
         checks.instance(self.solve, SolveOptions, "model: solve", "options (abut.SolveOptions)")
-        for name, kinds in RECORDS.items():
-            object.__setattr__(self, name, checks.records(getattr(self, name), name, kinds))
+        for name, kinds in LISTS.items():
+            records = checks.records(getattr(self, name), name, kinds)
+            object.__setattr__(self, name, in_shares(records, name, self.solve.end, self.times_in_shares))
+        object.__setattr__(self, "solve", of_ends(self.solve, self.times_in_shares))
+        object.__setattr__(self, "times_in_shares", True)
         object.__setattr__(self, "physics", checks.listed(self.physics, "physics"))
         check_entries(self.mesh)
         check_filled(self.mesh, self._named())
@@ -248,12 +249,12 @@ class Model:
     def histories(self) -> tuple[History, ...]:
         """The different histories of everything prescribed, the ramp first."""
         given = (*self.supports, *self.loads, *self.equations, *self.rigid, *self.contacts, *self.rotations)
-        amplitudes = [item.amplitude for item in (*given, *self.preloads, *self.couplings, *self.penetrations)]
-        amplitudes += [connector.amplitude for connector in self.connectors]
+        others: tuple[Any, ...] = (*self.preloads, *self.couplings, *self.penetrations, *self.connectors)
+        amplitudes = [item.amplitude for item in (*given, *others)]
         friction = [contact.friction_amplitude for contact in self.contacts]
         of_rigid = (history for body in self.referenced for history in body.amplitudes.values())
-        others = (history for item in self.physics for history in item.amplitudes)
-        return tuple(dict.fromkeys([None, *amplitudes, *friction, *of_rigid, *others, *self.opened.values()]))
+        own = (history for item in self.physics for history in item.amplitudes)
+        return tuple(dict.fromkeys([None, *amplitudes, *friction, *of_rigid, *own, *self.opened.values()]))
 
     @cached_property
     def opened(self) -> dict[str, Away]:
@@ -389,9 +390,6 @@ class Model:
                     "its own side to be unique: swap contactor and target"
                 )
         object.__setattr__(self, "contacts", tuple(map(self._decided, self.contacts)))
-        self._check_sides()
-
-    def _check_sides(self) -> None:
         every = [self.sides(contact) for contact in self.contacts]
         for i, (contact, surfaces) in enumerate(zip(self.contacts, every)):
             if not self.finite or contact.kind == "tied":

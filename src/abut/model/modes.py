@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -12,8 +13,24 @@ from abut.model.conditions import Amplitude, History
 MOST_MODES = 10_000
 
 
+class AtTime:
+    """What is asked for about the state at a time of a run."""
+
+    time: float | None
+
+    @property
+    def share(self) -> float:
+        """That time, in a model, as a share of the end."""
+        return 1.0 if self.time is None else self.time
+
+    @property
+    def locking(self) -> tuple[History, ...]:
+        """With a corner at its time, where a load step ends."""
+        return turn_at(self.share)
+
+
 @dataclass(frozen=True)
-class Frequencies:
+class Frequencies(AtTime):
     """Natural frequencies of the assembly as it is loaded at the end of a load step.
 
     Closed contact stays closed and what sticks sticks; what slips does so without friction along its surface, or with
@@ -42,9 +59,9 @@ class Frequencies:
     side : str
         The node set on one side of the sector whose equations say that it moves as the other side does, turned by one
         sector. Every equation between these nodes and others is taken to be one of those.
-    time : float
-        Of the state, in [0, 1], where a load step then ends. 0: of the model as it is before anything acts, all contacts
-        but ties open.
+    time : float, optional
+        Of the state, where a load step then ends; the end of the run where left out. 0: of the model as it is before
+        anything acts, all contacts but ties open.
     open : sequence of str
         Contacts that hold nothing in the vibrations, though they press in the state.
 
@@ -67,7 +84,7 @@ class Frequencies:
     diameters: Sequence[int] = (0,)
     sectors: float = 0.0
     side: str = ""
-    time: float = 1.0
+    time: float | None = None
     open: Sequence[str] = ()
 
     def __post_init__(self) -> None:
@@ -84,11 +101,6 @@ class Frequencies:
             )
         if self.cyclic or self.sectors or self.side:
             self._check_cyclic()
-
-    @property
-    def locking(self) -> tuple[History, ...]:
-        """With a corner at its time, where a load step ends."""
-        return turn_at(self.time)
 
     @property
     def phased(self) -> bool:
@@ -115,7 +127,7 @@ class Frequencies:
 
 
 @dataclass(frozen=True)
-class Buckling:
+class Buckling(AtTime):
     """Linear buckling: factors of the stresses at the end of the last load step at which the assembly gives way.
 
     Closed contact stays closed, as for ``Frequencies``. Stresses are those of all that acts together; kinematics must be
@@ -125,7 +137,7 @@ class Buckling:
     ----------
     count : int
         How many positive factors, from the smallest.
-    time : float
+    time : float, optional
         As of ``Frequencies``.
 
     Raises
@@ -141,21 +153,18 @@ class Buckling:
     """
 
     count: int = 5
-    time: float = 1.0
+    time: float | None = None
 
     def __post_init__(self) -> None:
         _check_count(self.count, "buckling")
         check_time(self.time, "buckling")
 
-    @property
-    def locking(self) -> tuple[History, ...]:
-        """With a corner at its time, where a load step ends."""
-        return turn_at(self.time)
-
 
 def check_time(time: object, name: str, start: bool = False) -> None:
     """Raise InputError for what is no time of a loaded state; ``start``: that of the unloaded one is among them."""
-    if isinstance(time, bool) or not isinstance(time, (int, float)) or not 0.0 <= time <= 1.0:
+    if time is None:
+        return
+    if isinstance(time, bool) or not isinstance(time, (int, float)) or not 0.0 <= time < math.inf:
         raise InputError(f"{name}: time: expected a time from the start to the end, got {time!r}")
     if not (start or time):
         raise InputError(f"{name}: time: expected a time after the start, where nothing acts yet, got {time!r}")

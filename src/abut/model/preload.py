@@ -93,8 +93,8 @@ class Preload:
             checks.finite(self.lock, f"{where}: lock")
             if self.force is None:
                 raise InputError(f"{where}: lock goes with force; a shortening keeps what its amplitude says")
-            if not 0.0 < self.lock < 1.0:
-                raise InputError(f"{where}: lock: expected a time between 0 and 1, the end, got {self.lock:g}")
+            if not self.lock > 0.0:
+                raise InputError(f"{where}: lock: expected a time after the start, got {self.lock:g}")
 
     @property
     def locking(self) -> tuple[Amplitude, ...]:

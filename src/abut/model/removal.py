@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -16,12 +17,12 @@ from abut.mesh.mesh import Mesh
 from abut.model.body_forces import BodyForce, Centrifugal, Gravity, Load
 from abut.model.conditions import Amplitude, History
 from abut.model.contact import Contact
+from abut.model.hold import END
 from abut.model.loads import Force, NodalForce, Pressure, Traction
 from abut.model.penetration import Penetration
 from abut.model.preload import Preload
 from abut.model.step_ends import SAME
 
-END = 1.0  # of time
 RAMP = ((0.0, 0.0), (END, 1.0))
 
 
@@ -69,10 +70,10 @@ class Removal:
                 checks.finite(getattr(self, name), f"{where}: {name}")
         if self.until <= SAME and self.since is None:
             raise InputError(f"{where}: it is not there at any time; give until or since, or leave the body out")
-        sound = 0.0 <= self.until <= self.gone <= self.back and self.until < min(self.back, END)
-        if not (sound and self.gone <= END and (self.since is None or self.since < END)):
+        back = math.inf if self.since is None else self.since
+        if not (0.0 <= self.until <= self.gone <= back and self.until < back):
             raise InputError(
-                f"{where}: expected times 0 <= until <= released <= since < {END:g}, until < since; got until "
+                f"{where}: expected times 0 <= until <= released <= since, until < since; got until "
                 f"{self.until:g}, released {self.gone:g}, since {'none' if self.since is None else f'{self.since:g}'}"
             )
 

@@ -15,10 +15,10 @@ from abut import checks
 from abut.errors import InputError
 from abut.mesh.mesh import Mesh
 from abut.model.body_forces import Centrifugal, Load
-from abut.model.conditions import History, vector
+from abut.model.conditions import SLIGHTLY, vector
 from abut.model.consistency import check_filled, check_loads
 from abut.model.loads import Temperature
-from abut.model.modes import Buckling, Frequencies, check_time, turn_at
+from abut.model.modes import AtTime, Buckling, Frequencies, check_time
 
 MOST_POINTS = 100_000
 Number = tuple[float, ...]
@@ -62,7 +62,7 @@ def _count(value: Any, least: int, where: str) -> None:
 
 
 @dataclass(frozen=True)
-class Harmonic:
+class Harmonic(AtTime):
     """Steady vibrations under loads that go as a cosine, over a range of frequencies: amplitude and phase.
 
     The modes are those of the first ``Frequencies`` of the model, about the loaded state, with what these leave out of the
@@ -89,7 +89,7 @@ class Harmonic:
         are added to the shares.
     fields : sequence of float
         Frequencies of which whole displacements are kept and written.
-    time : float
+    time : float, optional
         Of the loaded state, as of ``Frequencies``.
 
     Raises
@@ -114,7 +114,7 @@ class Harmonic:
     damping: float | Sequence[float] = 0.0
     rayleigh: Sequence[float] = (0.0, 0.0)
     fields: Sequence[float] = ()
-    time: float = 1.0
+    time: float | None = None
 
     def __post_init__(self) -> None:
         check_time(self.time, "harmonic", start=True)
@@ -138,11 +138,6 @@ class Harmonic:
         object.__setattr__(self, "fields", _places(self.fields, *between, "harmonic: fields"))
 
     @property
-    def locking(self) -> tuple[History, ...]:
-        """With a corner at its time, where a load step ends."""
-        return turn_at(self.time)
-
-    @property
     def last(self) -> float:
         """The highest frequency."""
         return float(self.between[1])
@@ -159,7 +154,7 @@ class Harmonic:
 
 
 @dataclass(frozen=True)
-class Transient:
+class Transient(AtTime):
     """Vibrations over time under loads with histories of their own, which begin at rest.
 
     Modes and what is added to them are as of ``Harmonic``. Results are changes of the loaded state.
@@ -177,7 +172,7 @@ class Transient:
     damping, rayleigh : as of ``Harmonic``
     fields : sequence of float
         Times of which whole displacements are kept and written.
-    time : float
+    time : float, optional
         Of the loaded state, as of ``Frequencies``.
 
     Raises
@@ -199,7 +194,7 @@ class Transient:
     damping: float | Sequence[float] = 0.0
     rayleigh: Sequence[float] = (0.0, 0.0)
     fields: Sequence[float] = ()
-    time: float = 1.0
+    time: float | None = None
 
     def __post_init__(self) -> None:
         check_time(self.time, "transient", start=True)
@@ -207,14 +202,12 @@ class Transient:
         object.__setattr__(self, "loads", _loads(self.loads, "transient: loads"))
         if not self.loads:
             raise InputError("transient: nothing moves anything; give loads")
+        for i, load in enumerate(self.loads):
+            if load.amplitude is not None and load.amplitude.points[-1][0] > 1.0 + SLIGHTLY:
+                raise InputError(f"transient: loads[{i}]: amplitude: times are shares of the period here, from 0 to 1")
         _count(self.steps, 1, "transient: steps")
         _damping(self, "transient")
         object.__setattr__(self, "fields", _places(self.fields, 0.0, self.period, "transient: fields"))
-
-    @property
-    def locking(self) -> tuple[History, ...]:
-        """With a corner at its time, where a load step ends."""
-        return turn_at(self.time)
 
     def at(self) -> NDArray[np.float64]:
         """(steps + 1,) times."""
@@ -244,4 +237,4 @@ def check_responses(mesh: Mesh, modes: Sequence[Wanted], rigid: Collection[str],
 
 def basis_of(modes: Frequencies | Buckling, wanted: Response) -> bool:
     """Whether a response is made of these modes."""
-    return isinstance(modes, Frequencies) and not modes.phased and 0 in modes.diameters and modes.time == wanted.time
+    return isinstance(modes, Frequencies) and not modes.phased and 0 in modes.diameters and modes.share == wanted.share

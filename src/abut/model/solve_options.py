@@ -31,11 +31,12 @@ class SolveOptions:
     max_iterations : int
         Allowed in a step, of each method that is tried.
     times : sequence of float, optional
-        Ends of the steps, increasing, over 0 up to 1, in place of ``steps``; the ramp's factor is the time.
+        Ends of the steps, increasing, over 0 up to ``end``, in place of ``steps``; the ramp grows with the time.
     seconds : float, optional
         That a run may take, after which it ends with the steps done so far [s].
     end : float
-        The time in results when all of it is done. Times of a model are shares of it, from 0 to 1.
+        The time when all of it is done: all times that a model is made of, those of amplitudes too, run from 0 to it. The
+        model keeps them as shares of it, from 0 to 1.
 
     Raises
     ------
@@ -90,12 +91,13 @@ class SolveOptions:
             times = tuple(checks.finite(time, "solve.times") for time in self.times or ())
         except TypeError:
             raise InputError(f"solve.times: expected numbers, got {self.times!r}") from None
-        if not times or times[0] <= 0.0 or times[-1] > 1.0 or any(a >= b for a, b in pairwise(times)):
-            raise InputError(f"solve.times: expected increasing numbers over 0 up to 1, got {list(times)}")
+        if not times or times[0] <= 0.0 or times[-1] > self.end or any(a >= b for a, b in pairwise(times)):
+            raise InputError(f"solve.times: expected increasing numbers over 0 up to {self.end:g}, got {list(times)}")
         for before, time in pairwise((0.0, *times)):
-            if time - before <= SAME:
+            if time - before <= SAME * self.end:
+                least = SAME * self.end
                 raise InputError(
-                    f"solve.times: {before!r} and {time!r} are one time, as they differ by {SAME:g} at most; leave one out"
+                    f"solve.times: {before!r} and {time!r} are one time, as they differ by {least:g} at most; leave one out"
                 )
         if self.steps not in (AUTO, 1, len(times)):
             raise InputError(f"solve: {self.steps} steps, but {len(times)} times; give one of them")

@@ -13,7 +13,8 @@ from abut.errors import SingularModelError
 from abut.linear.solver import Prepared
 from abut.nonlinear.exact import Aim, Solved, finer, settled, solve_set
 from abut.nonlinear.friction import solve_friction
-from abut.nonlinear.iteration import Found, Increment, active_laws
+from abut.nonlinear.iteration import Found, Increment
+from abut.nonlinear.laws import active_laws
 from abut.nonlinear.newton import End, Method, newton
 from abut.nonlinear.search import Log, search
 from abut.nonlinear.settings import Settings

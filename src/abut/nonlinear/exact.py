@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from abut.linear.solver import Prepared
 from abut.nonlinear.iteration import (
     Increment,
-    active_laws,
     advance,
     broken,
     imbalance,
@@ -20,6 +19,7 @@ from abut.nonlinear.iteration import (
     next_active,
     report,
 )
+from abut.nonlinear.laws import active_laws
 from abut.nonlinear.settings import Settings
 from abut.solution import Iteration
 from abut.solution.state import State

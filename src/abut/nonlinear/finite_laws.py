@@ -4,16 +4,16 @@ that has lost its contact springs back, and from there far into the other one, s
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from abut.contact.laws import ConstraintFunction, Law, LawState
-from abut.contact.smooth_friction import SmoothCoulomb
-from abut.nonlinear.friction_laws import friction_laws, next_status
+from abut.contact.laws import Law, LawState
+from abut.nonlinear.friction_laws import next_status
 from abut.nonlinear.iteration import Increment
+from abut.nonlinear.laws import Asked, friction_laws
 from abut.nonlinear.settings import NOTHING
 from abut.problem.current import bare
 from abut.problem.laws import SOFT, LawRows, at_multipliers
@@ -24,31 +24,6 @@ from abut.solution.state import CLOSED, OPEN, SLIPPING, State
 DIGITS = np.finfo(float).nmant  # binary ones of a number
 Status = NDArray[np.int8]
 Vector = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Asked:
-    """Which laws hold for now. own: laws of one's own, else complementarity in their place; reference: the largest pressure,
-    to which the constraint function is relative; without one complementarity (Coulomb's law) in its place; by_pressure: laws
-    of one's own are linearised at the gaps that meet the pressures of the state."""
-
-    own: bool = True
-    reference: float | None = None
-    by_pressure: bool = False
-
-    def of(self, pair: Pair, system: Linearised) -> Law | None:
-        """The law of a pair, if it is another one than complementarity or Coulomb's."""
-        if not pair.smooth:
-            return None
-        law = pair.contact.law
-        if not isinstance(law, str):
-            return law if self.own else None
-        if self.reference is None:
-            return None
-        epsilon = pair.contact.epsilon
-        if pair.frictional:
-            return SmoothCoulomb(pair.stiffness, pair.friction(system.factors), float(np.sqrt(epsilon)), self.reference)
-        return ConstraintFunction(np.full(len(pair), pair.stiffness), epsilon, self.reference)
 
 
 def barely_covered(system: Linearised) -> NDArray[np.bool_]:

@@ -1,45 +1,18 @@
-"""The laws of contact with friction at a state, and the status that they ask for."""
+"""The status that complementarity, Coulomb's law and ties ask for."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.contact.laws import Complementarity, Coulomb, Tied
 from abut.nonlinear.iteration import Increment
 from abut.nonlinear.settings import NOTHING
-from abut.problem.laws import LawRows, at_multipliers, giving
 from abut.problem.linearised import Linearised
 from abut.problem.pair import Pair
 from abut.solution.state import CLOSED, OPEN, SLIPPING, State
 
 Vector = NDArray[np.float64]
 Status = NDArray[np.int8]
-
-
-def friction_laws(system: Linearised, state: State) -> list[LawRows]:
-    """The laws of all pairs with the status as it is."""
-    parts = (system.gap(state), state.multipliers, state.closed, state.slipping)
-    return [
-        giving(
-            pair,
-            at_multipliers(pair, _law(pair, system), gap, multipliers, closed, slipping if pair.frictional else None),
-        )
-        for pair, gap, multipliers, closed, slipping in zip(system.pairs, *map(system.split, parts))
-    ]
-
-
-def _law(pair: Pair, system: Linearised) -> Tied | Coulomb | Complementarity:
-    if pair.tied:
-        return Tied()
-    if not pair.frictional:
-        return Complementarity(pair.stiffness)
-    return coulomb(pair, system)
-
-
-def coulomb(pair: Pair, system: Linearised) -> Coulomb:
-    """The law of a pair with friction."""
-    return Coulomb(pair.stiffness, pair.friction(system.factors))
 
 
 def next_status(system: Linearised, state: State, increment: Increment, gap: Vector | None = None) -> Status:

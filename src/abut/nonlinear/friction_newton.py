@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.linear.solver import Prepared
-from abut.nonlinear.friction_laws import Status, friction_laws, next_status
+from abut.nonlinear.friction_laws import Status, next_status
 from abut.nonlinear.iteration import Found, Increment, advance, imbalance, largest_pressure, points, report
+from abut.nonlinear.laws import friction_laws
 from abut.nonlinear.newton import End, Method, newton
 from abut.problem.pair import Pair
 from abut.solution import Iteration

@@ -8,10 +8,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.contact.laws import Complementarity, Tied
 from abut.linear.solver import Prepared
 from abut.nonlinear.settings import DEFAULT, NOTHING, Settings
-from abut.problem.laws import LawRows, at_multipliers
+from abut.problem.laws import LawRows
 from abut.problem.linearised import Linearised
 from abut.problem.problem import Laws
 from abut.solution import Iteration
@@ -47,16 +46,6 @@ class Found:
     between: NDArray[np.uint8] | None = None
     system: Linearised | None = None
     reached: State | None = None
-
-
-def active_laws(system: Linearised, state: State) -> list[LawRows]:
-    """Complementarity with the active set as it is, and ties."""
-    return [
-        at_multipliers(pair, Tied() if pair.tied else Complementarity(pair.stiffness), g, p, closed)
-        for pair, g, p, closed in zip(
-            system.pairs, system.split(system.gap(state)), system.split(state.multipliers), system.split(state.closed)
-        )
-    ]
 
 
 def advance(solver: Prepared, state: State, laws: Sequence[LawRows], accuracy: float = 0.0) -> State:

@@ -13,7 +13,8 @@ from abut.errors import SingularModelError
 from abut.linear.solver import Prepared
 from abut.nonlinear.exact import Aim, Solved, finer, settled, solve_set
 from abut.nonlinear.interior_point import Interior, Manner, Programme, begin, iterate, near
-from abut.nonlinear.iteration import Found, Increment, active_laws, broken, imbalance, largest_pressure, report
+from abut.nonlinear.iteration import Found, Increment, broken, imbalance, largest_pressure, report
+from abut.nonlinear.laws import active_laws
 from abut.nonlinear.newton import End, Method, newton
 from abut.nonlinear.smooth_laws import finish_smooth
 from abut.solution import Iteration

@@ -15,7 +15,6 @@ from abut.linear.solver import LinearSolver, Prepared
 from abut.nonlinear.drag import Drag, dragged
 from abut.nonlinear.exchange import exchanged
 from abut.nonlinear.finite_laws import (
-    Asked,
     barely_covered,
     following_status,
     laws_of,
@@ -27,9 +26,9 @@ from abut.nonlinear.finite_laws import (
     yielding,
 )
 from abut.nonlinear.forcing import forcing
-from abut.nonlinear.friction_laws import friction_laws
 from abut.nonlinear.holding import not_adrift, resisting, sticking
 from abut.nonlinear.iteration import Found, Increment, advance, largest_pressure, largest_so_far, part_of, report
+from abut.nonlinear.laws import Asked, friction_laws
 from abut.nonlinear.line_search import shortened
 from abut.nonlinear.newton import End, Method, newton
 from abut.nonlinear.settings import NOTHING, Settings

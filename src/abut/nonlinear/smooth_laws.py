@@ -9,16 +9,14 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.contact.laws import Complementarity, ConstraintFunction, Tied
-from abut.contact.smooth_friction import SmoothCoulomb
+from abut.contact.laws import ConstraintFunction
 from abut.errors import SingularModelError
 from abut.linear.solver import Prepared
 from abut.nonlinear.forcing import forcing
-from abut.nonlinear.friction_laws import coulomb, friction_laws, next_status
+from abut.nonlinear.friction_laws import next_status
 from abut.nonlinear.iteration import (
     Found,
     Increment,
-    active_laws,
     advance,
     imbalance,
     largest_pressure,
@@ -26,6 +24,7 @@ from abut.nonlinear.iteration import (
     part_of,
     report,
 )
+from abut.nonlinear.laws import Asked, active_laws, at_status, friction_laws
 from abut.nonlinear.line_search import shortened
 from abut.nonlinear.newton import End, Method, newton
 from abut.problem.laws import LawRows, at_multipliers, in_the_mean
@@ -72,24 +71,18 @@ class Smooth:
 
     def laws(self, system: Linearised, state: State) -> list[LawRows]:
         """Of all pairs."""
-        laws = []
+        laws, asked = [], Asked(reference=self.reference)
         parts = (system.gap(state), state.multipliers, state.closed, state.slipping)
         for pair, g, p, closed, slips in zip(system.pairs, *map(system.split, parts)):
-            at, asked, epsilon = pair.points, pair.contact.law, pair.contact.epsilon
-            if pair.frictional and pair.smooth:
-                bound = pair.friction(system.factors)
-                softened = SmoothCoulomb(pair.stiffness, bound, float(np.sqrt(epsilon)), self.reference)
-                laws.append(at_multipliers(pair, softened, g, p, closed))
-            elif pair.frictional:
-                laws.append(at_multipliers(pair, coulomb(pair, system), g, p, closed, slips))
-            elif at is not None:
+            at, law = pair.points, asked.of(pair, system)
+            if at is not None:
                 gap = at.gap + at.operator @ state.unknowns + at.prescribed @ system.factors
-                laws.append(in_the_mean(at, ConstraintFunction(at.stiffness, epsilon, self.reference), gap, p))
-            elif pair.tied or isinstance(asked, str):
-                plain = Tied() if pair.tied else Complementarity(pair.stiffness)
-                laws.append(at_multipliers(pair, plain, g, p, closed))
+                function = ConstraintFunction(at.stiffness, pair.contact.epsilon, self.reference)
+                laws.append(in_the_mean(at, function, gap, p))
+            elif law is not None:
+                laws.append(at_multipliers(pair, law, g, p, closed))
             else:
-                laws.append(at_multipliers(pair, asked, g, p, closed))
+                laws.append(at_status(system, pair, g, p, closed, slips))
         return laws
 
     def violation(self, laws: Sequence[LawRows]) -> NDArray[np.float64]:

@@ -11,12 +11,12 @@ import scipy.sparse as sp
 from abut.mesh.facets import bodies_at
 from abut.model import Model
 from abut.model.preload import Section, sections
+from abut.model.step_ends import SAME
 from abut.problem.follower_loads import Slopes
 from abut.problem.sections import given_force, shortening_row
 from abut.problem.terms import MatrixTangent, Motion, Share
 
 HELD = 1e6  # stiffness of what is locked or held over Young's modulus times the size of its place: it gives a millionth
-SAME = 1e-9  # times that differ by less are one
 
 
 @dataclass(frozen=True)
