@@ -1,15 +1,25 @@
-"""Models that once stopped on the way: over sharp edges, by sharp ends, stacks of leaves, a rough pad."""
+"""Models that once stopped on the way: over sharp edges, by sharp ends, stacks of leaves, a rough pad, a wheel in its
+backlash, rollers in races, slip that begins."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from abut.benchmarks import BENCHMARKS, finite_edges, finite_stacks, run
+from abut.benchmarks import BENCHMARKS, finite_edges, finite_stacks, once_stopped, run
 from abut.benchmarks.finite_beams import elastica
 
-QUICK = ("over-edge-quad4-ground", "rough-pad")
-NAMES = [benchmark.name for benchmark in (*finite_edges.BENCHMARKS, *finite_stacks.BENCHMARKS)]
+QUICK = (
+    "over-edge-quad4-ground",
+    "rough-pad",
+    "wheel-backlash",
+    "rollers-in-races-quad4",
+    "bar-drawn-2",
+    "press-fit-pulled",
+)
+NAMES = [
+    benchmark.name for benchmark in (*finite_edges.BENCHMARKS, *finite_stacks.BENCHMARKS, *once_stopped.BENCHMARKS)
+]
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,7 @@ INSIDE_NUMPY = f"numpy.{'core' if np.__version__.startswith('1.') else '_core'}.
 SCRIPT = """
 import os, runpy, signal, sys
 module = sys.argv.pop(1)
+signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored where the tests run in the background of a shell
 class Hand:
     def find_spec(self, name, *_):
         if name == module:

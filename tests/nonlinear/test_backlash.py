@@ -6,24 +6,8 @@ import numpy as np
 import pytest
 
 import abut
-from abut.benchmarks.finite_gears import BASE, CENTRES, TEETH, gear, placed
-from abut.mesh.make import join
-
-PLASTIC = abut.LinearElastic(3000.0, 0.35)
-
-
-def driven(torque: float, friction: float = 0.0, play: float = 0.025) -> abut.Model:
-    """A pinion on its axle, which a torque turns, and a wheel whose hub is held: both flanks of all teeth may touch, and a
-    tooth of the pinion is in the middle of a gap. Lengths in mm, moduli in N/mm^2."""
-    pinion, wheel = (gear(teeth, 0, both=True, play=play, cell="quad4") for teeth in TEETH)
-    wheel = placed(wheel, np.pi + np.pi / TEETH[1], CENTRES)
-    return abut.Model(
-        join({"pinion": pinion, "wheel": wheel}), [abut.Solid("pinion", PLASTIC), abut.Solid("wheel", PLASTIC)],
-        [abut.Support("wheel.hub", x=0, y=0)], [abut.Moment("axle", torque)],
-        [abut.Contact("pinion.flanks", "wheel.flanks", friction=friction)],
-        couplings=[abut.Coupling("axle", "pinion.hub", "kinematic", reference=(0.0, 0.0), x=0.0, y=0.0)],
-        plane="strain", kinematics="finite",
-    )  # fmt: skip
+from abut.benchmarks.finite_gears import BASE
+from abut.benchmarks.once_stopped import driven
 
 
 def ends(torque: float, friction: float = 0.0, play: float = 0.025) -> tuple[np.ndarray, float, abut.Solution]:

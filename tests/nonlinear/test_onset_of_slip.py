@@ -6,37 +6,14 @@ import numpy as np
 import pytest
 
 import abut
+from abut.benchmarks.once_stopped import FIT_FRICTION, FULL, REACH, bar, pulled
 from abut.mesh import make
 from abut.nonlinear.pace import Pace, Slips
 from abut.nonlinear.settings import DEFAULT
 from abut.problem.onset import Onset
 
-YOUNG, LENGTH, HEIGHT, PRESSURE, FRICTION = 1e5, 20.0, 0.5, 10.0, 0.3
 POINTS, AIM, SMALLEST = DEFAULT.steps.points, DEFAULT.steps.aim, DEFAULT.steps.smallest
 FINER = 1.0 / POINTS  # of a step that jumps over the onset
-FULL = FRICTION * PRESSURE * LENGTH  # force under which all of the bar slips
-REACH = FULL * LENGTH / (2.0 * YOUNG * HEIGHT)  # displacement of its end then
-
-
-def bar(kinematics: str, pull: float) -> abut.Model:
-    """A flat bar, pressed on a stiff block, then drawn along it by its end."""
-    parts = {
-        "bar": make.rectangle([0, LENGTH], [0, HEIGHT], cells=[24, 1]),
-        "block": make.rectangle([-1, LENGTH + 4], [-2, 0], cells=[29, 1]),
-    }
-    pressed, drawn = abut.Amplitude(((0, 0), (0.3, 1), (1, 1))), abut.Amplitude(((0, 0), (0.3, 0), (1, 1)))
-    return abut.Model(
-        make.join(parts),
-        plane="stress",
-        solids=[
-            abut.Solid("bar", abut.LinearElastic(YOUNG, 0)),
-            abut.Solid("block", abut.LinearElastic(100 * YOUNG, 0)),
-        ],
-        supports=[abut.Support("block.bottom", x=0, y=0), abut.Support("bar.right", x=pull, amplitude=drawn)],
-        loads=[abut.Pressure("bar.top", PRESSURE, amplitude=pressed)],
-        contacts=[abut.Contact("bar.bottom", "block.top", friction=FRICTION)],
-        kinematics=kinematics,
-    )
 
 
 def curve(solution: abut.Solution) -> tuple[np.ndarray, np.ndarray]:
@@ -65,30 +42,11 @@ def test_bar_drawn_along_a_block(kinematics: str, times: float) -> None:
 def test_press_fit_pulled_out_in_one_ramp(kinematics: str) -> None:
     """The interference is there from the outset: the first step shows the fit alone, and what the whole of it carries at
     last is mu times the pressure."""
-    friction, pull = 0.15, 0.1
-    parts = {
-        "shaft": make.rectangle([0, 10], [0, 40], cells=[3, 16]),
-        "hub": make.rectangle([10, 20], [2, 40], cells=[3, 15]),
-    }
-    steel = abut.LinearElastic(2e5, 0.3)
-    solution = abut.solve(
-        abut.Model(
-            make.join(parts),
-            plane="axisymmetric",
-            solids=[abut.Solid(body, steel) for body in parts],
-            supports=[
-                abut.Support("shaft.left", x=0),
-                abut.Support("hub.top", y=0),
-                abut.Support("shaft.bottom", y=-pull),
-            ],
-            contacts=[abut.Contact("shaft.right", "hub.left", friction=friction, offset=-0.01)],
-            kinematics=kinematics,
-        )
-    )
+    solution = abut.solve(pulled(kinematics))
     assert solution.converged
     time, _ = curve(solution)
     force = np.array([step.contacts[0].force[1] for step in solution.steps])
-    full = friction * solution.contacts[0].force_by_area
+    full = FIT_FRICTION * solution.contacts[0].force_by_area
     assert time[0] < 1e-3
     assert abs(force[0]) < 0.25 * full
     assert abs(force[-1] - full) < 1e-6 * full if kinematics == "small" else abs(force[-1] - full) < 0.03 * full

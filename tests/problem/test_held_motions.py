@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from problem.test_neutral_motions import LOAD, races
 
 import abut
+from abut.benchmarks.once_stopped import LOAD, races
 from abut.diagnosis import check
 from abut.mesh import make
 

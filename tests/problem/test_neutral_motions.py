@@ -9,6 +9,7 @@ import pytest
 import scipy.sparse as sp
 
 import abut
+from abut.benchmarks.once_stopped import LOAD, STEEL, races
 from abut.diagnosis import check
 from abut.mesh import make
 from abut.problem.constraints import supports
@@ -17,34 +18,6 @@ from abut.problem.free_modes import free_mode_springs
 from abut.problem.loads import loads
 from abut.problem.neutral_motions import Neutral, neutral_motions
 from abut.problem.restraint import restraint
-
-STEEL = abut.LinearElastic(210e3, 0.3)
-LOAD = 3000.0
-
-
-def races(
-    cell: str, cells: int, around: int, angles: tuple[float, ...] = (-135.0, -45.0), **more: object
-) -> abut.Model:
-    """Rollers of radius 1 between half rings with races of radii 2 and 4, turned by 0.13; the inner ring pressed down."""
-    parts = {
-        "outer": make.ring((4.0, 5.0), (-180, 0), cells=(2, around), cell=cell),
-        "inner": make.ring((1.0, 2.0), (-180, 0), cells=(2, around), cell=cell),
-    }
-    for i, angle in enumerate(np.deg2rad(angles)):
-        roller, by = make.disc(1.0, cells=cells, cell=cell), angle + 0.13
-        turn = np.array([[np.cos(by), np.sin(by)], [-np.sin(by), np.cos(by)]])
-        parts[f"r{i}"] = replace(roller, points=roller.points @ turn + 3.0 * np.array([np.cos(angle), np.sin(angle)]))
-    mesh = make.join(parts)
-    loads = [abut.Force("inner.inner", (0.0, -LOAD)), *more.pop("loads", [])]
-    contacts = [
-        abut.Contact(f"r{i}.round", race, name=f"r{i} {race}", friction=more.get("friction", 0.0))
-        for i in range(len(angles))
-        for race in ("outer.inner", "inner.outer")
-    ]
-    return abut.Model(
-        mesh, [abut.Solid(body, STEEL) for body in mesh.bodies],
-        [abut.Support("outer.outer", x=0, y=0), abut.Support("inner.inner", x=0)], loads, contacts, plane="strain",
-    )  # fmt: skip
 
 
 @pytest.mark.parametrize(("cell", "cells", "around"), [("quad4", 6, 53), ("quad8", 4, 37), ("tri3", 6, 53)])

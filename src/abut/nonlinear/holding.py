@@ -61,19 +61,34 @@ def resisting(problem: ContactProblem, system: Linearised, state: State, setting
 def not_adrift(problem: ContactProblem, system: Linearised, state: State, there: State, near: float) -> State:
     """The end of an iteration, without what carries a body far along motions that nothing resists while it touches nothing:
     its linear system knows nothing of them. A nearly singular system may carry a body so far that rounding of it is more
-    than a facet: three rounds. Without it ``test_sound_models`` (flows, is unloaded and loaded) fails."""
+    than a facet: three rounds. Without it ``test_sound_models`` (flows, is unloaded and loaded) fails.
+
+    One that touches along a flat place slides freely, too, whatever its own normals: what takes it farther than all of the
+    mesh is large is rounding (``test_rounding_throws_no_ring_out``)."""
     way = problem.displacement(there) - problem.displacement(state)
     if system.restraint.by_supports or np.abs(way).max() <= near * _facet(problem):
         return there
     rigid, supports = _now(problem, _at(system), system.factors)
     rows = sum(_closed(system, rigid, state), np.zeros_like(supports))
     touched = np.repeat(rows.diagonal().reshape(-1, rigid.per_group).any(axis=1), rigid.per_group)
-    axes = free_motions([supports, rows, np.diag(touched.astype(float))])
+    aloft = free_motions([supports, rows, np.diag(touched.astype(float))])
+    everything = float(np.ptp(problem.model.mesh.points, axis=0).max())
+    for axes, most in ((aloft, near * _facet(problem)), (free_motions([supports]), everything)):
+        there = _without_drift(problem, system, state, there, rigid, axes, most)
+    return there
+
+
+def _without_drift(
+    problem: ContactProblem, system: Linearised, state: State, there: State, rigid: RigidModes, axes: NDArray[np.float64],
+    most: float,
+) -> State:  # fmt: skip
+    """``there``, from ``state`` on, without its share in rigid motions, orthonormal axes (n_modes, k), if that takes a point
+    farther than ``most``."""
     assert system.about is not None
     free = problem.constraints.near(system.about.at, system.factors)
     for _ in range(3):
         drift = _along(rigid, axes, problem.displacement(there) - problem.displacement(state))
-        if np.abs(drift).max() <= near * _facet(problem):
+        if np.abs(drift).max() <= most:
             break
         there = replace(there, unknowns=there.unknowns - free.coordinates(drift))
     return there
