@@ -5,7 +5,7 @@ Parts: those of ``PARTS`` with closed forms, and "edge" and "snap" (large slidin
 minute or two, those of solids of second order and the finest ten a cell type, which --cells picks by that of the side named
 first: --chosen solves each model once, with abut's choice.
 The exit status is 1 where abut's choice misses a limit, or where the wrong side is off by more than that and no
-line that says "swap" fails.
+line that says "swap" fails or warns.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from moving import MOVING
 from problems import KINDS, Case
 
 import abut
-from abut.diagnosis.cures import cures
+from abut.diagnosis.cures import cure
 from abut.errors import AbutError
 
 RATIOS = (1e-3, 1e-1, 1.0, 10.0, 1e3)
@@ -95,7 +95,8 @@ LONG = (
 @dataclass(frozen=True)
 class Row:
     """errors: with the first side, and with the second, as contactor, NaN where not solved; chosen: by abut, 0 or 1; why: in
-    its words; said: whether with the other side a line fails ("sides", "oscillation") that says "swap"."""
+    its words; said: whether with the other side a line fails or warns ("sides", "oscillation", "pressure error") whose cure
+    says "swap"."""
 
     case: Case
     errors: tuple[float, float]
@@ -121,7 +122,7 @@ def run(case: Case, limit: float, both: bool) -> Row:
             errors[side] = math.inf
             continue
         errors[side] = case.error(solution)
-        said = side != chosen and any("swap" in way for check, way in cures(solution) if not check.passed)
+        said = side != chosen and any("swap" in cure(check, solution) for check in solution.certificate)
     return Row(case, (errors[0], errors[1]), chosen, contact.chosen, said, limit)
 
 

@@ -11,7 +11,7 @@ import pytest
 
 import abut
 from abut.cells import CELLS
-from abut.diagnosis.cures import cures
+from abut.diagnosis.cures import cure, cures
 from abut.mesh.make import box, join
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "bench" / "sides"))
@@ -34,6 +34,27 @@ def test_the_wrong_side_is_told() -> None:
     row = study.run(problems.line(("quad4", "quad4"), 1e3, (12, 4)), 0.04, both=True)
     assert (row.chosen, row.said, row.silent) == (1, True, False)
     assert row.errors[0] > 0.5 > 5.0 * row.errors[1]
+
+
+def test_the_wrong_side_is_told_where_it_costs_little() -> None:
+    """Half as fine again and ten times as stiff: off by more than the 4 % that the study allows, by too little for the line
+    "sides" to fail; that of the error warns, and its cure is the other side. With that one nothing advises to swap."""
+    case = problems.line(("tri3", "tri3"), 10.0, (12, 8))
+    row = study.run(case, 0.04, both=True)
+    assert row.errors[0] > 0.04 > row.errors[1]
+    assert (row.chosen, row.said, row.silent) == (1, True, False)
+    wrong, right = (abut.solve(case.forced(side)) for side in (0, 1))
+    ways = {check.name: cure(check, wrong) for check in wrong.certificate if check.warns}
+    assert ways["pressure error"].startswith("swap the sides (contactor = ")
+    assert not any("swap" in cure(check, right) for check in right.certificate)
+
+
+def test_no_side_of_two_alike_is_to_be_swapped() -> None:
+    """Of one modulus and about as fine, on four facets over the half width: finer ones help, not the other side."""
+    case = problems.line(("quad4", "quad4"), 1.0, (4, 5))
+    solution = abut.solve(case.forced(0))
+    (way,) = (cure(check, solution) for check in solution.certificate if check.name == "pressure error")
+    assert way.startswith("refine both")
 
 
 def test_a_finer_contactor_is_told() -> None:

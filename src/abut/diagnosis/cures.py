@@ -8,7 +8,7 @@ import numpy as np
 
 from abut.analysis.statistics import LOADED
 from abut.cells import CELLS
-from abut.contact.contactor_choice import FINER, Choice
+from abut.contact.contactor_choice import FINER, Choice, choose
 from abut.contact.coupling import surface_degree
 from abut.contact.geometry import facet_sizes
 from abut.contact.sides import words
@@ -54,7 +54,10 @@ def cure(check: Check, solution: Solution) -> str:
     choice = EITHER if check.name == "contactor's edges" else None
     at_edge = any(one.name == "sharp edge" and one.contact == check.contact for one in solution.certificate)
     line = "sharp edge" if at_edge and check.name in OF_NARROW else check.name
-    return OF_CONTACT[line](contact, result, swap(solution.model, contact, choice))
+    sides = swap(solution.model, contact, choice)
+    if line == "pressure error" and not choose(*solution.model.measured(contact)).clear:
+        sides = ""  # finer facets on both sides will do more than the other of two alike
+    return OF_CONTACT[line](contact, result, sides)
 
 
 def cures(solution: Solution) -> tuple[tuple[Check, str], ...]:
@@ -204,8 +207,9 @@ def _pressure_error(contact: Contact, result: ContactResult, sides: str) -> str:
     size = float(np.median(facet_sizes(result.contactor)[loaded]))
     first = result.contactor.dim == 3 and bool((result.contactor.kinds == CELLS["tri3"].code).any())
     higher = ", and cells of second order take off more than that" if first else ""
+    way = f"{sides}, or " if sides else ""
     return (
-        f"refine both surfaces where they touch: facets of half the size ({0.5 * size:.2g}) halve the error{higher}; "
+        f"{way}refine both surfaces where they touch: facets of half the size ({0.5 * size:.2g}) halve the error{higher}; "
         "but round the edges of sharp bodies, where pressure has no limit"
     )
 

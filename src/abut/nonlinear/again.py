@@ -18,7 +18,9 @@ from abut.problem.problem import ContactProblem, Problem
 from abut.problem.terms import Motion, Share
 from abut.solution import Iteration
 
-ENOUGH = 1e-4  # of the largest force and pressure, left by iterative solvers: the forces change these by some percent
+# Of the largest force and pressure, left by iterative solvers: the forces change these by some percent, and what the
+# correction itself leaves of pressures and stresses is a percent or more.
+ENOUGH = 1e-3
 
 
 @dataclass(frozen=True)
