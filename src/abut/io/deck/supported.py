@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 
 from abut.errors import InputError, nearest
-from abut.io.deck import spring_cards
+from abut.io.deck import mass_cards, spring_cards
 from abut.io.deck.cards import Card, key
 from abut.io.deck.elements import ELEMENTS, refusal
 from abut.io.deck.output_cards import REQUESTS
@@ -37,6 +37,7 @@ READ: dict[str, tuple[str, ...]] = {
     "DENSITY": (),
     "EXPANSION": ("TYPE", "ZERO"),
     "ORIENTATION": ("NAME", "SYSTEM", "DEFINITION", "LOCAL DIRECTIONS"),
+    "DISTRIBUTION": ("NAME", "LOCATION", "TABLE", "INPUT"),
     **dict.fromkeys(
         ("BEAM SECTION", "BEAM GENERAL SECTION"), ("ELSET", "MATERIAL", "ORIENTATION", "SECTION", "OFFSET1", "OFFSET2")
     ),
@@ -47,10 +48,10 @@ READ: dict[str, tuple[str, ...]] = {
     "USER SECTION": ("ELSET", "MATERIAL", "CONSTANTS"),
     "MEMBRANE SECTION": ("ELSET", "MATERIAL", "ORIENTATION", "OFFSET", "NODAL THICKNESS"),
     "SOLID SECTION": ("ELSET", "MATERIAL", "ORIENTATION", "NODAL THICKNESS", "CONTROLS", "OFFSET"),
-    "BOUNDARY": ("OP", "AMPLITUDE", "TYPE", "LOAD CASE", "FIXED", "TIME DELAY"),
-    "CLOAD": ("OP", "AMPLITUDE", "LOAD CASE", "TIME DELAY"),
-    "DLOAD": ("OP", "AMPLITUDE", "LOAD CASE", "TIME DELAY"),
-    "DSLOAD": ("OP", "AMPLITUDE", "LOAD CASE", "TIME DELAY"),
+    "BOUNDARY": ("OP", "NAME", "AMPLITUDE", "TYPE", "LOAD CASE", "FIXED", "TIME DELAY"),
+    "CLOAD": ("OP", "NAME", "AMPLITUDE", "LOAD CASE", "TIME DELAY"),
+    "DLOAD": ("OP", "NAME", "AMPLITUDE", "LOAD CASE", "TIME DELAY"),
+    "DSLOAD": ("OP", "NAME", "AMPLITUDE", "LOAD CASE", "TIME DELAY"),
     "TEMPERATURE": ("OP", "AMPLITUDE", "TIME DELAY"),
     "INITIAL CONDITIONS": ("TYPE",),
     "AMPLITUDE": ("NAME", "TIME", "VALUE", "DEFINITION"),
@@ -69,6 +70,7 @@ READ: dict[str, tuple[str, ...]] = {
     "TIE": ("NAME", "POSITION TOLERANCE", "ADJUST", "TYPE", "CYCLIC SYMMETRY", "NO THICKNESS", "NO ROTATION"),
     "SPRING": ("ELSET", "NONLINEAR"),
     "GAP": ("ELSET",),
+    "MASS": ("ELSET",),
     "CYCLIC SYMMETRY MODEL": ("N", "TIE", "ELSET", "NGRAPH"),
     "SELECT CYCLIC SYMMETRY MODES": ("NMIN", "NMAX"),  # of steps that ask for modes; others have none
     "PRE-TENSION SECTION": ("SURFACE", "NODE"),
@@ -193,6 +195,9 @@ def sift(cards: Iterable[Card], reasons: Reasons, ignore: Collection[str] = ()) 
             code = key(card.get("TYPE") or "")
             if card.key == "ELEMENT" and code in POINT_ELEMENTS:  # their node is all they have
                 kept.append(Card("DCOUP", card.title, card.parameters, card.lines, card.place))
+                continue
+            if card.key == "ELEMENT" and code == mass_cards.CODE:
+                kept.append(replace(card, key=mass_cards.ELEMENTS))
                 continue
             if card.key == "ELEMENT" and code in spring_cards.NODES:
                 if spring_cards.CARD[code] not in asked:
