@@ -115,7 +115,10 @@ NEEDED = {  # leaving these out would leave no deck
     key("MEMBRANE SECTION"),
 }
 
-POINT_ELEMENTS = ("DCOUP2D", "DCOUP3D")  # the reference nodes of *DISTRIBUTING COUPLING
+AT_NODES = {  # types of elements -> key of *ELEMENT cards with them
+    **dict.fromkeys(("DCOUP2D", "DCOUP3D"), "DCOUP"),  # the reference nodes of *DISTRIBUTING COUPLING
+    mass_cards.CODE: mass_cards.ELEMENTS,
+}
 WRITTEN = ("NODE", "ELEMENT", "NSET", "ELSET")  # cards whose parameters say what their numbers mean
 RESTART = (
     "READ: the state at the end of an earlier run is not read; put the model and the steps of that run before these"
@@ -193,11 +196,8 @@ def sift(cards: Iterable[Card], reasons: Reasons, ignore: Collection[str] = ()) 
         elif card.key in _READ and not (card.key in LEFT_OUT and card.key in asked):
             _parameters(card, asked, ignored, found)
             code = key(card.get("TYPE") or "")
-            if card.key == "ELEMENT" and code in POINT_ELEMENTS:  # their node is all they have
-                kept.append(Card("DCOUP", card.title, card.parameters, card.lines, card.place))
-                continue
-            if card.key == "ELEMENT" and code == mass_cards.CODE:
-                kept.append(replace(card, key=mass_cards.ELEMENTS))
+            if card.key == "ELEMENT" and code in AT_NODES:  # their node is all they have
+                kept.append(replace(card, key=AT_NODES[code]))
                 continue
             if card.key == "ELEMENT" and code in spring_cards.NODES:
                 if spring_cards.CARD[code] not in asked:
