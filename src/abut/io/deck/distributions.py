@@ -19,7 +19,7 @@ def axes_by_elements(
     card: Card, cards: Sequence[Card], mesh: MeshCards, known: Mapping[str, Card]
 ) -> Iterator[tuple[Numbers | None, Mapping[str, Card]]]:
     """Elements (None: all of the section) of one orientation, and the *ORIENTATION cards by name with that of the section as
-    it counts there: later lines of a distribution override earlier ones. card: of the section.
+    it counts there; later ones override earlier ones, as later sections do. card: of the section.
 
     Raises InputError for distributions that do not exist, and lines that are none."""
     name = (card.get("ORIENTATION") or "").upper()
@@ -36,7 +36,6 @@ def axes_by_elements(
     parts: list[tuple[Numbers, Line]] = []
     for line in tables[table.upper()].lines:
         members = mesh.element_sets.resolve(line, 0, "element") if line.text(0) else every
-        parts = [(np.setdiff1d(elements, members), other) for elements, other in parts]
         parts.append((np.intersect1d(every, members), line))
     if left := set(every.tolist()).difference(*(elements.tolist() for elements, _ in parts)):
         raise tables[table.upper()].error(
