@@ -72,6 +72,8 @@ def cells(cards: Sequence[Card]) -> str:
 
 def _numbers(kind: str) -> int:
     """Element number and nodes."""
+    if kind == "MASS":
+        return 1 + 1
     if kind.startswith(("SPRING", "GAP", "B31", "T3D2")):
         return 1 + 2
     if kind.startswith(("B32", "T3D3")):

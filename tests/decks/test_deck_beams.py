@@ -188,3 +188,32 @@ def test_as_calculix(code: str, section: str, tmp_path: Path) -> None:
     assert end(solution) == pytest.approx(
         wanted, abs=(0.01 if section != SECTION and code == "B32R" else 0.002) * np.abs(wanted).max()
     )
+
+
+@pytest.mark.parametrize("kind", ["S8", "S4"])
+def test_a_beam_on_the_edge_of_a_shell(kind: str, tmp_path: Path) -> None:
+    """A strip of shell, and a beam from the middle of its end on, joined by a rigid knot: pulled, L / E A of each, and bent
+    upright, P L^3 / 3 E I of both with the beam's end turned by the strip's; a knot holds a section, which stiffens the
+    strip by less than its width over its length."""
+    length, wide, thick = 10.0, 0.4, 0.25
+    nodes = [(x, y) for x in (0.0, 5.0, 10.0) for y in (-wide / 2, 0.0, wide / 2)]
+    text = "*NODE\n" + "".join(f"{i + 1}, {x}, {y}, 0.\n" for i, (x, y) in enumerate(nodes))
+    if kind == "S8":
+        more = [(2.5, -wide / 2), (2.5, 0.0), (2.5, wide / 2), (7.5, -wide / 2), (7.5, 0.0), (7.5, wide / 2)]
+        more += [(x, y) for x in (0.0, 5.0, 10.0) for y in (-wide / 4, wide / 4)]
+        text += "".join(f"{i + 10}, {x}, {y}, 0.\n" for i, (x, y) in enumerate(more))
+        cells = ["1,4,5,2,10,18,11,16", "2,5,6,3,11,19,12,17", "4,7,8,5,13,20,14,18", "5,8,9,6,14,21,15,19"]
+    else:
+        cells = ["1,4,5,2", "2,5,6,3", "4,7,8,5", "5,8,9,6"]
+    text += "*NODE, NSET=END\n40, 20., 0., 0.\n*NODE\n41, 15., 0., 0.\n"
+    text += f"*ELEMENT, TYPE={kind}, ELSET=S\n" + "".join(f"{k + 1}, {c}\n" for k, c in enumerate(cells))
+    text += "*ELEMENT, TYPE=B32, ELSET=B\n9, 8, 41, 40\n"
+    text += f"*NSET, NSET=FOOT\n1, 2, 3{', 16, 17' if kind == 'S8' else ''}\n*BOUNDARY\nFOOT, 1, 6\n"
+    text += f"*MATERIAL, NAME=M\n*ELASTIC\n{E}, 0.\n*SHELL SECTION, ELSET=S, MATERIAL=M\n{thick}\n"
+    text += f"*BEAM SECTION, ELSET=B, MATERIAL=M, SECTION=RECT\n{wide}, {thick}\n0., 1., 0.\n"
+    solution = solve(tmp_path, text + step("*CLOAD", "END, 1, 1.", "END, 3, 1."))
+    at = solution.model.mesh.points[:, 0] > 20.0 - 1e-9
+    found = solution.displacement[at].mean(axis=0)
+    inertia = wide * thick**3 / 12.0
+    assert found[0] == pytest.approx(2.0 * length / (E * wide * thick), rel=wide / length)
+    assert found[2] == pytest.approx((2.0 * length) ** 3 / (3.0 * E * inertia), rel=wide / length)

@@ -173,11 +173,10 @@ def test_plane_models_are_one_thick(tmp_path):
         (KINEMATIC.replace("PUSHED", "PUSHED, INFLUENCE RADIUS=.5"), r"couplings\[0\]\.radius: no point of .* nearest at"),
         (KINEMATIC.replace("PUSHED", "PUSHED, ORIENTATION=O") + "1\n", "no orientation named 'O'"),
         (
-            "*ORIENTATION, NAME=O, SYSTEM=CYLINDRICAL\n0, 0, 0, 0, 0, 1\n"
-            + KINEMATIC.replace("PUSHED", "PUSHED, ORIENTATION=O") + "1\n",
-            "codes differ in where cylindrical axes of a coupling are taken",
+            "*ORIENTATION, NAME=O\n0, 0, 1, 1, 0, 0\n"
+            + DISTRIBUTING.replace("PUSHED", "PUSHED, ORIENTATION=O") + step("*BOUNDARY", "99, 3, 3, 0.1"),
+            "takes forces and moments along axes of its own, and no displacements",
         ),
-        (DISTRIBUTING.replace("PUSHED", "PUSHED, ORIENTATION=O"), "ORIENTATION: a mean motion has no axes of its own"),
         (DISTRIBUTING + "1, 2\n" + step("*BOUNDARY", "99, 3, 3, 0.1"), "does not list direction 3, and transmits no"),
         (DISTRIBUTING + "1, 3\n" + step("*CLOAD", "99, 4, 2."), "does not list direction 4, and transmits no moment"),
         (DISTRIBUTING.replace("UTING\n", "UTING, WEIGHTING METHOD=LINEAR\n"), "weights over the distance are not read"),
@@ -252,3 +251,33 @@ def test_couplings_of_an_assembly(tmp_path):
 def test_rotations_that_are_not_listed_are_free(tmp_path):
     text = COLUMN + DISTRIBUTING + "1, 3\n" + step("*BOUNDARY", "99, 3, 6, 0.1")
     assert load(tmp_path, text).model.couplings[0].given == ("z",)
+
+
+def test_a_distributing_coupling_along_axes_of_its_own(tmp_path):
+    """First axis z, second x, third y: a force along the first and a moment about it are what they are along z."""
+    own = "*ORIENTATION, NAME=O\n0, 0, 1, 1, 0, 0\n" + DISTRIBUTING.replace("PUSHED", "PUSHED, ORIENTATION=O")
+    turned = load(tmp_path, COLUMN + own + step("*CLOAD", "99, 1, 10.", "99, 4, 2.", "99, 6, 3.")).model
+    force, moment = turned.loads
+    assert force.value == pytest.approx((0.0, 0.0, 10.0))
+    assert moment.value == pytest.approx((0.0, 3.0, 2.0))
+
+
+def test_a_kinematic_coupling_around_an_axis(tmp_path):
+    """Along cylindrical axes the second direction of a reference that turns moves each node around the axis by turn times
+    radius, and leaves it free along the radius."""
+    around = "*ORIENTATION, NAME=O, SYSTEM=CYLINDRICAL\n.5, .5, 0, .5, .5, 1\n"
+    text = around + KINEMATIC.replace("PUSHED", "PUSHED, ORIENTATION=O") + "2\n"
+    solution = solve(tmp_path, COLUMN + text + step("*BOUNDARY", "99, 1, 5", "99, 6, 6, 0.01"))
+    top = solution.model.mesh.points[:, 2] == 2.0
+    arm = solution.model.mesh.points[top, :2] - 0.5
+    tangent = np.column_stack([-arm[:, 1], arm[:, 0]])
+    assert np.sum(solution.displacement[top, :2] * tangent, axis=1) == pytest.approx(0.01 * np.sum(arm**2, axis=1))
+
+
+def test_the_reference_in_a_set_of_point_elements(tmp_path):
+    """The element DCOUP3D stands in a set that *ELSET makes."""
+    point = "*ELEMENT, TYPE=DCOUP3D\n77, 99\n*ELSET, ELSET=POINT\n77\n"
+    model = load(
+        tmp_path, COLUMN + point + "*DISTRIBUTING COUPLING, ELSET=POINT\nTOP, 1.\n" + step("*CLOAD", "99, 3, 1.")
+    ).model
+    assert model.couplings[0].reference == (0.5, 0.5, 3.0)

@@ -153,3 +153,29 @@ def test_refused(old: str, new: str, said: str, tmp_path: Path) -> None:
     assert old in text
     with pytest.raises(InputError, match=said):
         loaded(tmp_path, text.replace(old, new, 1))
+
+
+def test_axes_that_differ_from_element_to_element(tmp_path: Path) -> None:
+    """A distribution gives the answer of a section for each set of elements with its own axes; later lines count."""
+    parts = "*ELSET, ELSET=A, GENERATE\n1, 2\n*ELSET, ELSET=B, GENERATE\n3, 4\n"
+    first, second = "1., .5, .2, 0., 1., .7", "0., 1., 0., 0., 0., 1."
+    whole = deck(BLOCK, "C3D20", ORTHO + SPACE, FOOT, "*CLOAD\ntop, 1, 0.1\ntop, 3, 0.2\n")
+    section = "*SOLID SECTION, ELSET=E, MATERIAL=M, ORIENTATION=O"
+    rows = f"B, {first}\n, {first}\n3, {second}\nB, {second}\n"
+    table = f"*DISTRIBUTION, NAME=D\n{rows}*ORIENTATION, NAME=OD\nD\n"
+    axes = f"*ORIENTATION, NAME=O1\n{first}\n*ORIENTATION, NAME=O2\n{second}\n"
+    each = "".join(f"*SOLID SECTION, ELSET={s}, MATERIAL=M, ORIENTATION=O{k}\n" for s, k in (("A", 1), ("B", 2)))
+    distributed = whole.replace(section, parts + table + section + "D")
+    found, wanted, alike = (
+        abut.solve(loaded(tmp_path, text).model).displacement
+        for text in (distributed, whole.replace(section, parts + axes + each[:-1]), whole)
+    )
+    assert found == pytest.approx(wanted, abs=1e-9 * np.abs(wanted).max())
+    assert np.abs(alike - wanted).max() > 0.01 * np.abs(wanted).max()
+    for bad, words in (
+        (distributed.replace("=OD\nD", "=OD\nE2"), "no .DISTRIBUTION named 'E2'"),
+        (distributed.replace(rows, f"B, {first}\n"), "element 1 of 'E' has no line"),
+        (distributed.replace(rows, ""), "its data line is missing"),
+    ):
+        with pytest.raises(InputError, match=words):
+            loaded(tmp_path, bad)

@@ -175,7 +175,7 @@ def test_names_that_stand_for_several_things(tmp_path):
         ("*NODE\n1, 0, 0\n", "no \\*ELEMENT cards"),
         ("1, 2, 3\n*NODE\n", ":1: a data line before the first card"),
         ("** nothing\n", "no card in the file"),
-        ("*\n", "a star without the name"),
+        ("*\n1, 2.\n", "a star without the name"),
     ],
 )
 def test_faults_are_named_with_their_place(text, words, tmp_path):

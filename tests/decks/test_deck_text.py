@@ -9,6 +9,7 @@ import pytest
 
 import abut
 from abut.cli import main
+from abut.errors import InputError
 from abut.io.deck.cards import as_float
 from abut.job.load import load_job
 from models.decks import BRICKS, HELD, PAIR, PUSH, load, write
@@ -113,3 +114,22 @@ def test_names_do_not_steer_the_terminal(
     words = said.out + said.err
     assert not set(words) & set("\x1b\x07\x9b\u202e")
     assert "\\x" in words or "\\u" in words
+
+
+@pytest.mark.parametrize(
+    ("given", "instead"),
+    [
+        ("*ELASTIC", "*ELASTIC TYPE=ISO"),  # no comma behind the name
+        ("*NODE, NSET=ALL", "*HEADING NL1\n*NODE, NSET=ALL"),
+        ("*NODE, NSET=ALL", "*\n*NODE, NSET=ALL"),
+        ("*BOUNDARY", "*BOUNDARY, NAME=foot"),
+    ],
+)
+def test_cards_as_people_write_them(given: str, instead: str, tmp_path: Path) -> None:
+    wanted, found = (load(tmp_path, text).model for text in (DECK, DECK.replace(given, instead, 1)))
+    assert (found.solids, found.supports, found.contacts) == (wanted.solids, wanted.supports, wanted.contacts)
+
+
+def test_a_parameter_in_place_of_a_card(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="a parameter in place of the name of a card"):
+        load(tmp_path, DECK.replace("*ELASTIC", "*TYPE=ISO", 1))

@@ -94,7 +94,10 @@ def test_rolled(tmp_path: Path) -> None:
 
 
 def test_files(tmp_path: Path) -> None:
-    """``shells.pvd`` with a file a step, which VTK reads; other bodies are not in it."""
+    """``shells.pvd`` with a file a step, which VTK reads, and ``shells.csv`` with a row for each point; other bodies are not
+    in them."""
+    import csv
+
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
     abut.write(pulled(tmp_path, (0.1, 0.0, 0.0)), tmp_path / "out")
@@ -106,6 +109,11 @@ def test_files(tmp_path: Path) -> None:
     assert reader.GetOutput().GetNumberOfCells() == 20
     assert data.GetArray("membrane_force").GetComponent(0, 0) == pytest.approx(0.1, rel=1e-6)
     assert {data.GetArrayName(i) for i in range(data.GetNumberOfArrays())} >= {"rotation", "moment", "shear_force"}
+    rows = list(csv.DictReader((tmp_path / "out" / "shells.csv").read_text().splitlines()))
+    assert len(rows) == reader.GetOutput().GetNumberOfPoints()
+    for row in rows:
+        assert (row["step"], row["shell"], float(row["first_x"]), float(row["normal_z"])) == ("1", "strip", 1.0, 1.0)
+        assert float(row["n11"]) == pytest.approx(0.1, rel=1e-6)
     abut.write(pulled(tmp_path, (0.1, 0.0, 0.0)), tmp_path / "out", output=abut.Output(fields=["contact"]))
     assert not list((tmp_path / "out").glob("shells*"))
 

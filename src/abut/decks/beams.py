@@ -108,12 +108,19 @@ def _solid(deck: Deck, blocks: list[Block]) -> Sections:
 
 def _bound(deck: Deck, new: Deck, made: Mapping[int, list[Made]], place: Place, finite: bool) -> Deck:
     """``new`` with what the nodes of beams are for solids. made: of each node its sections."""
-    for node in made:
-        if node in deck.thin or any(bound.reference == node for bound in deck.couplings):
+    references = {bound.reference: bound for bound in deck.couplings}
+    for node in sorted(made.keys() & references.keys()):
+        if not references[node].thin:
             raise DeckError(
-                place, f"*ELEMENT: node {node} belongs to a beam and a shell, or is a reference; join them by *TIE"
+                place,
+                f"*ELEMENT: node {node} belongs to a beam and is the reference of a coupling ({references[node].place}); "
+                "give the coupling a node of its own, and join both by *RIGID BODY",
             )
+    shared = {node: deck.thin[node].own for node in made.keys() & deck.thin.keys()}
+    shared |= {node: tuple(references[node].nodes.tolist()) for node in made.keys() & references.keys()}
+    knots = [_knot(node, made[node], nodes, place) for node, nodes in shared.items()]
     new = renamed(new, {node: _all(sections) for node, sections in made.items()}, {})
+    made = {node: sections for node, sections in made.items() if node not in shared}
     held, turned = _turned(deck, ("boundary",)), _turned(deck, ("boundary", "force"))
     bound = [
         _coupling(node, sections, finite and node in held, place)
@@ -130,8 +137,8 @@ def _bound(deck: Deck, new: Deck, made: Mapping[int, list[Made]], place: Place, 
     ]
     return replace(
         new,
-        thin={**deck.thin, **thin},
-        couplings=(*new.couplings, *bound),
+        thin={**{node: each for node, each in deck.thin.items() if node not in shared}, **thin},
+        couplings=(*(each for each in new.couplings if each.reference not in shared), *knots, *bound),
         equations=(*deck.equations, *straight),
     )
 
@@ -162,6 +169,12 @@ def _coupling(node: int, sections: list[Made], rigid: bool, place: Place) -> Cou
     every = np.sort(_corners(sections[0])) if mean else _all(sections)
     name = f"section {node}" if mean else f"knot {node}"
     return Coupling(name, mean, node, "", every, frozenset(range(1, 7)), None, place, thin=True)
+
+
+def _knot(node: int, sections: list[Made], others: tuple[int, ...], place: Place) -> Coupling:
+    """Of the sections of beams at a node and what stands for it in shells (``others``): a rigid body, as in CalculiX."""
+    every = np.union1d(_all(sections), others)
+    return Coupling(f"knot {node}", False, node, "", every, frozenset(range(1, 7)), None, place, thin=True)
 
 
 def _turned(deck: Deck, kinds: tuple[str, ...]) -> set[int]:

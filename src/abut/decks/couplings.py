@@ -117,7 +117,10 @@ def reference_loads(
 
     Raises InputError for moments that plane models do not have."""
     pushed = courses(deck, "force") if names else {}
+    along_own = {bound.reference: bound.orientation for bound in deck.couplings if bound.distributing}
     for name, (reference, turning) in names.items():
+        axes = along_own.get(reference)
+        frame = np.eye(3) if axes is None else local_axes(axes, 3).frames(coordinates(deck, np.array([reference])))[0]
         alike: dict[Course | None, dict[int, float]] = {}
         for (node, direction), course in pushed.items():
             along = int(direction) - 1 if node == reference else int(direction) + 2 if node == turning else -1
@@ -127,8 +130,10 @@ def reference_loads(
                 alike.setdefault(unit, {})[along] = size / thickness
         for unit, values in alike.items():
             amplitude = None if unit is None else Amplitude(unit)
-            force = tuple(values.get(k, 0.0) for k in range(2 if plane else 3))
-            moment = tuple(values.get(k, 0.0) for k in range(5 if plane else 3, 6))
+            force, moment = (
+                tuple((np.array([values.get(k, 0.0) for k in range(i, i + 3)]) @ frame).tolist()) for i in (0, 3)
+            )
+            force, moment = force[: 2 if plane else 3], moment[2 if plane else 0 :]
             if any(force):
                 yield Force(name, force, amplitude)
             if any(moment):
@@ -232,6 +237,7 @@ def _check_unlisted(deck: Deck, reference: int) -> None:
 def _check(deck: Deck, groups: Groups, bound: Bound) -> None:
     reference = bound.reference
     _check_unlisted(deck, reference)
+    _check_own_axes(deck, bound)
     if reference not in deck.nodes:
         raise DeckError(bound.place, f"*COUPLING: REF NODE {reference} does not exist; give it in *NODE")
     for transform in deck.transforms:
@@ -258,6 +264,18 @@ def _check(deck: Deck, groups: Groups, bound: Bound) -> None:
                 f"*COUPLING: node {other.reference} is the reference of another coupling ({other.place}); couple the nodes "
                 "of both to one reference",
             )
+
+
+def _check_own_axes(deck: Deck, bound: Bound) -> None:
+    """A mean motion along axes of its own takes forces and moments, in three dimensions."""
+    if not bound.distributing or bound.orientation is None:
+        return
+    if any((bound.reference, k) in courses(deck, "boundary") for k in range(1, 7)):
+        raise DeckError(
+            bound.place,
+            f"*COUPLING: ORIENTATION: the *DISTRIBUTING of node {bound.reference} takes forces and moments along axes of "
+            "its own, and no displacements; take ORIENTATION out, and prescribe them along the global axes",
+        )
 
 
 def _points(groups: Groups, bound: Bound) -> tuple[str, tuple[float, ...] | None]:

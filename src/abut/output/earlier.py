@@ -10,7 +10,7 @@ from pathlib import Path
 from abut.output.responses import FIELDS, TABLES
 
 ASIDE = "earlier"
-OPTIONAL = ("fields.frd", "modes.csv", "modes.vtu", "beams.csv", FIELDS, *TABLES)
+OPTIONAL = ("fields.frd", "modes.csv", "modes.vtu", "beams.csv", "shells.csv", FIELDS, *TABLES)
 INDEX = ("summary.json", "report.html", "history.csv", "forces.csv", "run.jsonl", "fields.pvd", *OPTIONAL)
 _OF_STEP = re.compile(r"(?:fields|shells|laminates|beams|contact_[A-Za-z0-9._-]+?)_(\d{4,7})(?:_\d{4,})?\.p?vtu")
 _OF_ALL = re.compile(r"(?:shells|laminates|beams|contact_[A-Za-z0-9._-]+)\.pvd")

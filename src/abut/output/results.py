@@ -171,6 +171,8 @@ def write_index(folder: Path, solution: Solution, output: Output, final: bool = 
     write_text(folder / forces.FILE, forces.table(solution))
     if thin.TABLE in _files(solution, shown, output):
         write_text(folder / thin.TABLE, thin.table(solution))
+    if thin.SHELL_TABLE in _files(solution, shown, output):
+        write_text(folder / thin.SHELL_TABLE, thin.shell_table(solution, shown))
     for index, name in enumerate(probes.table_names([probe.name for probe in solution.model.probes])):
         write_text(folder / name, probes.table(solution.steps, index, solution.model.probes[index].steps))
     write_text(folder / "history.csv", _history(solution))

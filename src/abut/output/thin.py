@@ -1,4 +1,5 @@
-"""Files of shells on their mid-surfaces and of beams as lines: a VTU file a step, and a table of forces of beams."""
+"""Files of shells on their mid-surfaces and of beams as lines: a VTU file a step, and a table of
+the forces of each."""
 
 from __future__ import annotations
 
@@ -6,6 +7,8 @@ import csv
 import io
 from collections.abc import Sequence
 from pathlib import Path
+
+import numpy as np
 
 from abut.io.vtu import write_vtu
 from abut.model import Model
@@ -15,10 +18,14 @@ from abut.solution.beam_lines import forces, grid, known
 from abut.solution.grids import Grid
 
 SHELLS, LAMINATES, BEAMS = "shells", "laminates", "beams"
-TABLE = "beams.csv"
+TABLE, SHELL_TABLE = "beams.csv", "shells.csv"
 HEAD = [
     "step", "time", "beam", "x", "y", "z", "normal_force", "torque", "force_x", "force_y", "force_z", "moment_x", "moment_y",
     "moment_z",
+]  # fmt: skip
+SHELL_HEAD = [
+    "step", "time", "shell", "x", "y", "z", "first_x", "first_y", "first_z", "normal_x", "normal_y", "normal_z", "n11",
+    "n22", "n12", "m11", "m22", "m12", "q1", "q2",
 ]  # fmt: skip
 
 
@@ -35,6 +42,7 @@ def file_of(kind: str, step: Step) -> str:
 def files(model: Model, steps: Sequence[Step]) -> list[str]:
     """Names of those of all steps shown, with what tells of them together."""
     found = [name for kind in kinds(model) for name in (f"{kind}.pvd", *(file_of(kind, step) for step in steps))]
+    found += [SHELL_TABLE] if model.mesh.shells else []
     return [*found, TABLE] if known(model) else found
 
 
@@ -72,4 +80,20 @@ def table(solution: Solution) -> str:
                 numbers = [time, *at, normal, torque, *force, *moment]
                 first, *rest = (f"{value:.9g}" for value in numbers)
                 rows.writerow([step.number, first, body, *rest])
+    return text.getvalue()
+
+
+def shell_table(solution: Solution, steps: Sequence[Step]) -> str:
+    """Section forces of shells and of stacks of layers, a row for each point of the mid-surface, of ``steps``: where it lay
+    before it moved, first direction and normal, forces and moments per length along these."""
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow(SHELL_HEAD)
+    mesh = solution.model.mesh
+    for step in steps:
+        time = f"{step.factor * solution.model.solve.end:.9g}"
+        for body in (*mesh.shells, *mid_surface.laminates(mesh)):
+            of = mid_surface.of_step(mesh, step, body, solution.model.small_strains)
+            every = np.column_stack([of.points, of.first, of.normal, of.membrane, of.moment, of.shear])
+            rows.writerows([step.number, time, body, *(f"{value:.9g}" for value in row)] for row in every.tolist())
     return text.getvalue()

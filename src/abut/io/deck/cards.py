@@ -156,6 +156,7 @@ def as_integer(text: str) -> int | None:
     return int(text) if text.isascii() and text.isdigit() and len(text) < 16 and int(text) > 0 else None
 
 
+TEXT = "HEADING"
 Opens = Callable[[str, Mapping[str, str | None]], bool]
 
 
@@ -176,7 +177,9 @@ def read_cards(path: Path, opens: Opens, reasons: Reasons) -> tuple[Card, ...]:
         if pending:
             head = (*_parse("".join(pending).rstrip(","), begun), begun)
             pending.clear()
-        if head is not None:
+        if head is not None and (head[0] or data):
+            if not head[0]:
+                raise DeckError(head[3], "a star without the name of a card; comments begin with two stars")
             cards.append(Card(head[0], head[1], head[2], tuple(data), head[3]))
         head, data = None, []
 
@@ -203,11 +206,17 @@ def read_cards(path: Path, opens: Opens, reasons: Reasons) -> tuple[Card, ...]:
 
 
 def _parse(text: str, place: Place) -> tuple[str, str, dict[str, str | None]]:
-    """Key, title and parameters of a card's line."""
+    """Key, title and parameters of a card's line; no key for a star alone. A comma may be missing after the name."""
     parts = _split(text.rstrip(","))
     name = parts[0].lstrip("*").strip()
-    if not name:
-        raise DeckError(place, "a star without the name of a card; comments begin with two stars")
+    if key(name[: len(TEXT)]) == TEXT:  # and what stands behind it is text
+        name = TEXT
+    if "=" in name:  # *EXPANSION TYPE=ISO
+        before, _, value = name.partition("=")
+        *words, keyword = before.split()
+        name, parts[1:1] = " ".join(words), [f"{keyword}={value}"]
+        if not name:
+            raise DeckError(place, f"{text.strip()}: a parameter in place of the name of a card; write the name first")
     parameters: dict[str, str | None] = {}
     for part in parts[1:]:
         keyword, equals, value = part.partition("=")

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from abut.errors import nearest
-from abut.io.deck.cards import Card, key, of
+from abut.io.deck.cards import Card, Line, key, of
 from abut.io.deck.elastic_cards import orientation
 from abut.io.deck.mesh_cards import MeshCards
 from abut.io.deck.model_cards import one_node
@@ -52,12 +52,10 @@ def _coupling(card: Card, cards: Sequence[Card], following: Card | None, mesh: M
         )
     if key(following.get("COUPLING", "CONTINUUM") or "") != "CONTINUUM":
         raise following.error("COUPLING=STRUCTURAL: solids have displacements only; take CONTINUUM")
-    if card.has("ORIENTATION") and distributing:
-        raise card.error("ORIENTATION: a mean motion has no axes of its own; take it out, or use *KINEMATIC")
     label = card.get("CONSTRAINT NAME") or f"coupling of {surface.name}"
     return Coupling(
         label, distributing, reference, surface.name, NONE, directions, None, card.place,
-        radius=_radius(card), orientation=_axes(card, cards, directions),
+        radius=_radius(card), orientation=_axes(card, cards, frozenset() if distributing else directions),
     )  # fmt: skip
 
 
@@ -83,11 +81,6 @@ def _axes(card: Card, cards: Sequence[Card], directions: frozenset[int]) -> Orie
     if name.upper() not in known:
         raise card.unknown(f"no orientation named {name!r}{nearest(name.upper(), known)}")
     axes = orientation(known[name.upper()])
-    if axes.kind != "rectangular":
-        raise card.error(
-            "ORIENTATION: codes differ in where cylindrical axes of a coupling are taken; give SYSTEM=RECTANGULAR, or "
-            "couple all directions"
-        )
     return axes
 
 
@@ -132,13 +125,27 @@ def _by_lines(card: Card, cards: Sequence[Card], mesh: MeshCards) -> Iterator[Co
         )
 
 
+def _point_elements(name: str, cards: Sequence[Card]) -> Iterator[Line]:
+    """The lines of elements DCOUP3D and DCOUP2D in a set, which their own card or an *ELSET with numbers makes."""
+    listed = {
+        text
+        for card in of(cards, "ELSET")
+        if (card.get("ELSET") or "").upper() == name.upper() and not card.has("GENERATE")
+        for line in card.lines
+        for text in line.fields
+    }
+    for card in of(cards, "DCOUP"):
+        own = (card.get("ELSET") or "").upper() == name.upper()
+        yield from (line for line in card.lines if own or line.text(0) in listed)
+
+
 def _weighted(card: Card, cards: Sequence[Card], mesh: MeshCards) -> Coupling:
     """*DISTRIBUTING COUPLING: nodes with weights; its reference node is that of an element DCOUP3D or DCOUP2D."""
     name = card.need("ELSET")
-    elements = [e for e in of(cards, "DCOUP") if (e.get("ELSET") or "").upper() == name.upper() and e.lines]
-    if len(elements) != 1 or len(elements[0].lines) != 1:
+    lines = list(_point_elements(name, cards))
+    if len(lines) != 1:
         raise card.error(f"ELSET={name}: expected one element DCOUP3D or DCOUP2D, with the reference node")
-    line = elements[0].lines[0]
+    line = lines[0]
     reference = line.integer(1, "reference node")
     if reference not in mesh.numbers:
         raise line.unknown(f"node {reference} does not exist; give it in *NODE")

@@ -15,6 +15,7 @@ from abut.io.deck.coupling_cards import couplings
 from abut.io.deck.friction_cards import friction_notes, without_tied_friction
 from abut.io.deck.initial_conditions import initial_stress, initial_temperature
 from abut.io.deck.interference_cards import Scene, opened, with_interferences
+from abut.io.deck.mass_cards import with_weights
 from abut.io.deck.mesh_cards import MeshCards, mesh_cards
 from abut.io.deck.mode_cards import without_modes
 from abut.io.deck.model_cards import (
@@ -55,7 +56,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
     sifted = sift(without_tied_friction(every, notes), reasons, ignore)
     if not sifted.plain:
         reasons.tell()
-    cards = without_repeated(sifted.cards, notes)
+    cards = with_weights(without_repeated(sifted.cards, notes), modes is not None, reasons)
     outside, groups = split_steps(cards, reasons)
     mesh = mesh_cards(cards, notes, reasons)
     known = amplitudes(cards, reasons)

@@ -10,6 +10,7 @@ import numpy as np
 from abut.errors import nearest
 from abut.io.deck.beam_forms import form_of
 from abut.io.deck.cards import Card, Line, as_float, of
+from abut.io.deck.distributions import axes_by_elements
 from abut.io.deck.elastic_cards import orientation
 from abut.io.deck.mesh_cards import MeshCards
 from abut.io.deck.reasons import Place, Reasons
@@ -25,9 +26,11 @@ def sections(
     axes = {name.upper(): card for card in of(cards, "ORIENTATION") if (name := card.get("NAME"))}
     for card in (card for card in cards if card.key in _SECTIONS):
         with reasons.gathered():
-            section = _SECTIONS[card.key](card, mesh, known, axes)
-            result = [replace(s, elements=np.setdiff1d(s.elements, section.elements)) for s in result]
-            result.append(section)
+            for elements, here in axes_by_elements(card, cards, mesh, axes):
+                section = _SECTIONS[card.key](card, mesh, known, here)
+                section = section if elements is None else replace(section, elements=elements)
+                result = [replace(s, elements=np.setdiff1d(s.elements, section.elements)) for s in result]
+                result.append(section)
     return tuple(s for s in result if len(s.elements))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 
@@ -23,13 +23,13 @@ def springs(cards: Sequence[Card], nodes: frozenset[int], reasons: Reasons) -> t
     sets: dict[str, list[int]] = {}
     for card in of(cards, ELEMENTS):
         with reasons.gathered():
-            members = _elements(card, nodes, found)
+            listed = _elements(card, nodes, found)
             if card.get("ELSET"):
-                sets.setdefault(card.need("ELSET").upper(), []).extend(members)
+                sets.setdefault(card.need("ELSET").upper(), []).extend(listed)
     if found:
         for card in of(cards, "ELSET"):
             with reasons.gathered():
-                sets.setdefault(card.need("ELSET").upper(), []).extend(_members(card, found, sets))
+                sets.setdefault(card.need("ELSET").upper(), []).extend(members(card, found, sets))
     result: list[Spring] = []
     for card in (*of(cards, "SPRING"), *of(cards, "GAP")):
         with reasons.gathered():
@@ -59,8 +59,8 @@ def _elements(card: Card, nodes: frozenset[int], found: Found) -> list[int]:
     return result
 
 
-def _members(card: Card, found: Found, sets: Mapping[str, list[int]]) -> list[int]:
-    """The springs in a set of elements."""
+def members(card: Card, found: Collection[int], sets: Mapping[str, list[int]]) -> list[int]:
+    """Those of the elements ``found`` that are in a set."""
     numbers: list[int] = []
     for line in card.lines:
         if card.has("GENERATE"):

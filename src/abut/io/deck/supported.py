@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 
 from abut.errors import InputError, nearest
-from abut.io.deck import spring_cards
+from abut.io.deck import mass_cards, spring_cards
 from abut.io.deck.cards import Card, key
 from abut.io.deck.elements import ELEMENTS, refusal
 from abut.io.deck.output_cards import REQUESTS
@@ -37,6 +37,7 @@ READ: dict[str, tuple[str, ...]] = {
     "DENSITY": (),
     "EXPANSION": ("TYPE", "ZERO"),
     "ORIENTATION": ("NAME", "SYSTEM", "DEFINITION", "LOCAL DIRECTIONS"),
+    "DISTRIBUTION": ("NAME", "LOCATION", "TABLE", "INPUT"),
     **dict.fromkeys(
         ("BEAM SECTION", "BEAM GENERAL SECTION"), ("ELSET", "MATERIAL", "ORIENTATION", "SECTION", "OFFSET1", "OFFSET2")
     ),
@@ -47,10 +48,10 @@ READ: dict[str, tuple[str, ...]] = {
     "USER SECTION": ("ELSET", "MATERIAL", "CONSTANTS"),
     "MEMBRANE SECTION": ("ELSET", "MATERIAL", "ORIENTATION", "OFFSET", "NODAL THICKNESS"),
     "SOLID SECTION": ("ELSET", "MATERIAL", "ORIENTATION", "NODAL THICKNESS", "CONTROLS", "OFFSET"),
-    "BOUNDARY": ("OP", "AMPLITUDE", "TYPE", "LOAD CASE", "FIXED", "TIME DELAY"),
-    "CLOAD": ("OP", "AMPLITUDE", "LOAD CASE", "TIME DELAY"),
-    "DLOAD": ("OP", "AMPLITUDE", "LOAD CASE", "TIME DELAY"),
-    "DSLOAD": ("OP", "AMPLITUDE", "LOAD CASE", "TIME DELAY"),
+    "BOUNDARY": ("OP", "NAME", "AMPLITUDE", "TYPE", "LOAD CASE", "FIXED", "TIME DELAY"),
+    "CLOAD": ("OP", "NAME", "AMPLITUDE", "LOAD CASE", "TIME DELAY"),
+    "DLOAD": ("OP", "NAME", "AMPLITUDE", "LOAD CASE", "TIME DELAY"),
+    "DSLOAD": ("OP", "NAME", "AMPLITUDE", "LOAD CASE", "TIME DELAY"),
     "TEMPERATURE": ("OP", "AMPLITUDE", "TIME DELAY"),
     "INITIAL CONDITIONS": ("TYPE",),
     "AMPLITUDE": ("NAME", "TIME", "VALUE", "DEFINITION"),
@@ -69,6 +70,7 @@ READ: dict[str, tuple[str, ...]] = {
     "TIE": ("NAME", "POSITION TOLERANCE", "ADJUST", "TYPE", "CYCLIC SYMMETRY", "NO THICKNESS", "NO ROTATION"),
     "SPRING": ("ELSET", "NONLINEAR"),
     "GAP": ("ELSET",),
+    "MASS": ("ELSET",),
     "CYCLIC SYMMETRY MODEL": ("N", "TIE", "ELSET", "NGRAPH"),
     "SELECT CYCLIC SYMMETRY MODES": ("NMIN", "NMAX"),  # of steps that ask for modes; others have none
     "PRE-TENSION SECTION": ("SURFACE", "NODE"),
@@ -113,7 +115,10 @@ NEEDED = {  # leaving these out would leave no deck
     key("MEMBRANE SECTION"),
 }
 
-POINT_ELEMENTS = ("DCOUP2D", "DCOUP3D")  # the reference nodes of *DISTRIBUTING COUPLING
+AT_NODES = {  # types of elements -> key of *ELEMENT cards with them
+    **dict.fromkeys(("DCOUP2D", "DCOUP3D"), "DCOUP"),  # the reference nodes of *DISTRIBUTING COUPLING
+    mass_cards.CODE: mass_cards.ELEMENTS,
+}
 WRITTEN = ("NODE", "ELEMENT", "NSET", "ELSET")  # cards whose parameters say what their numbers mean
 RESTART = (
     "READ: the state at the end of an earlier run is not read; put the model and the steps of that run before these"
@@ -191,8 +196,8 @@ def sift(cards: Iterable[Card], reasons: Reasons, ignore: Collection[str] = ()) 
         elif card.key in _READ and not (card.key in LEFT_OUT and card.key in asked):
             _parameters(card, asked, ignored, found)
             code = key(card.get("TYPE") or "")
-            if card.key == "ELEMENT" and code in POINT_ELEMENTS:  # their node is all they have
-                kept.append(Card("DCOUP", card.title, card.parameters, card.lines, card.place))
+            if card.key == "ELEMENT" and code in AT_NODES:  # their node is all they have
+                kept.append(replace(card, key=AT_NODES[code]))
                 continue
             if card.key == "ELEMENT" and code in spring_cards.NODES:
                 if spring_cards.CARD[code] not in asked:
