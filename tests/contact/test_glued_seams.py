@@ -88,7 +88,6 @@ def test_two_blocks_glued_are_one(cell: str, limit: float) -> None:
     [
         ("hex8", {}, 1e-3),
         ("hex8", {"friction": 0.3}, 1e-3),
-        ("hex8", {"kinematics": "finite"}, 0.06),
         ("tet4", {}, 0.2),
     ],
 )
