@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from abut.contact.coupling import Coupling
@@ -20,14 +21,15 @@ from abut.mesh.surface import Surface
 from abut.types import Array, Sparse
 
 SAME = 1e-9  # of a glued side: points nearer to each other are at one place
-NEAR = 0.1  # of an edge: how far points of the other side lie off it, by sagittas of curved seams and gaps in the glue
+NEAR = 0.1  # of an edge: how far points of the other side lie off it, by its sagitta (an eighth of its angle; the test on a
+# curve) and by what glue bridges
 
 Glue = tuple[NDArray[np.int64], NDArray[np.int64]]  # points of a tie's contactor, and of its target
 
 
 def along_seams(space: PressureSpace, contactor: Surface, coupling: Coupling, glue: Sequence[Glue]) -> PressureSpace:
-    """The space with one pressure along seams, theory (P29): functions at points of a tie's contactor, which
-    goes where the target takes it, have the value there of those on the target."""
+    """The space with one pressure along seams, theory (P29): functions at points of a tie's contactor, which goes
+    where the target takes it, have the value there of those on the target."""
     follow = None
     for dependent, master in glue if space.continuous else ():
         mine, theirs = (np.isin(space.node, points) for points in (dependent, master))
@@ -38,15 +40,15 @@ def along_seams(space: PressureSpace, contactor: Surface, coupling: Coupling, gl
 
 def one_place(points: Array, glue: Sequence[Glue]) -> NDArray[np.int64]:
     """For every point (n_points, dim) the one that stands for it and those that glue holds at the same place."""
-    stands = np.arange(len(points))
+    n, rows, columns = len(points), [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
     for dependent, master in glue:
         apart, nearest = cKDTree(points[master]).query(points[dependent])
         met = apart <= SAME * np.ptp(points[master], axis=0).max()
-        a, b = stands[dependent[met]], stands[master[nearest[met]]]
-        for high, low in zip(np.maximum(a, b).tolist(), np.minimum(a, b).tolist()):
-            if high != low:
-                stands[stands == high] = low
-    return stands
+        rows.append(dependent[met])
+        columns.append(master[nearest[met]])
+    row, column = np.concatenate(rows), np.concatenate(columns)
+    _, label = connected_components(sp.csr_matrix((np.ones(len(row)), (row, column)), shape=(n, n)), directed=False)
+    return np.unique(label, return_index=True)[1][label]
 
 
 def _followed(

@@ -19,7 +19,6 @@ from abut.problem.neutral_motions import Neutral, beyond
 from abut.types import Array, Sparse
 
 NO_WORK = 1e-9  # of loads on a unit motion, over the sum of their sizes: rounding
-NO_RESISTANCE = 1e-14  # of a motion, over the strongest: rounding of squares
 TOGETHER = 1e-6  # share of a body's motion in a free one from which on it takes part
 CURE = "add a support, or a symmetry plane (normal = 0)"
 
@@ -143,7 +142,7 @@ def _resisted(resistances: Sequence[Array], motions: Array) -> float:
     total = sum(resistances)
     most = float(np.linalg.eigvalsh(total).max(initial=0.0))
     share = float(np.linalg.eigvalsh(motions.T @ total @ motions).max(initial=0.0))
-    return float(np.sqrt(share / most)) if share > NO_RESISTANCE * most else 0.0
+    return float(np.sqrt(max(share, 0.0) / most)) if most > 0.0 else 0.0
 
 
 def _require_faint(rigid: RigidModes, neutral: Neutral, loads: Sequence[Array]) -> None:
