@@ -37,7 +37,6 @@ AGREES = 0.01  # largest difference of displacement over the largest displacemen
 IGNORABLE = (
     "NLGEOM",
     "PERTURBATION",
-    "CHANGE SURFACE BEHAVIOR",
     *PROCEDURES,
 )
 

@@ -116,8 +116,6 @@ def edit(cards: Sequence[Card], stiffness: float, ignore: Collection[str] = (), 
         for card in step:
             if card.name == "SURFACE INTERACTION":
                 tied = False
-            if card.name == "SURFACE BEHAVIOR" and step is not model and "CHANGE SURFACE BEHAVIOR" in ignore:
-                continue  # it belongs to the change
             if card.name == "SURFACE BEHAVIOR":
                 tied = card.options.get("PRESSURE-OVERCLOSURE", "").upper() == "TIED"
                 card = Card(

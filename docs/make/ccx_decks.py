@@ -44,7 +44,7 @@ REMARKS = {
     "one; with these edges whole 2.1 %, and the plates' elements cut into four once and twice 1.15 and 1.03 %",
     "beamcontact": "a coarse beam turns about the edges of two narrow stops: the pressure stands on a part of a facet; "
     "refined below",
-    "changesurfbeh": "tied in both steps, since the change is left out",
+    "changesurfbeh": "glued in the first step, in the second one in contact",
     "contact11": "one element under pressure, held sideways: its upper side comes 100 x 0.2 / 210000 = 9.52e-5 closer to "
     "its lower one, in abut everywhere, in CalculiX with the deck's penalty by 8.7 to 9.5e-5",
     "contact2": "in the second of three steps; the pressure space: P2, with dual-P1 0.41 %",

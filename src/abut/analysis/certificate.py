@@ -104,7 +104,7 @@ def certificate(
     checks = [*_balanced(case, balance(pair, values) if balanced is None else balanced)]
     if not pair.tied:
         checks += [*_gaps(case, penetration), *_slid(case), *_law(case, residual)]
-    if not pair.two_way:
+    if not (pair.decided or pair.tied):
         checks += _pressure(case)
     if pair.contact.method == "segment-to-segment":
         checks.append(

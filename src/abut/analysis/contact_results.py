@@ -124,7 +124,9 @@ class PairState:
     def area(self) -> float:
         """Where contact is closed."""
         pair = self.pair
-        return float(pair.coupling.covered.sum() if pair.tied else self.weight[self.closed].sum())
+        if pair.tied:
+            return 0.0 if pair.away else float(pair.coupling.covered.sum())
+        return float(self.weight[self.closed].sum())
 
 
 EDGE = 0.05  # share of the force that functions with hardly any support may carry

@@ -51,6 +51,7 @@ from abut.problem.pair import Pair
 from abut.problem.penetrations import Penetrations
 from abut.problem.preloads import LockedPreloads
 from abut.problem.problem import ContactProblem
+from abut.problem.released import Released
 from abut.problem.rigid_bodies import RigidBody
 from abut.problem.scales import scales
 from abut.problem.sections import preload_forces
@@ -68,10 +69,10 @@ Acted = Acting | None  # what acts at the end of a step
 class _End:
     """A model at the end of a load step. displacement, internal, loads, reaction: (dim n_points,) without rigid motions on
     springs, forces of stresses, of loads, of supports and links; following: those of loads that follow the deformation,
-    and of other physics; locked, sprung: of preloads that are locked, of springs, connectors and what holds neutral
-    motions; held: of supports that come and go, part of the reaction; pressures: (n,) of each pair; cycling: (n,)
-    multipliers that keep changing; supports: of each pair int H_k over all of the deformed contactor, (n_functions,), where
-    it may meet the target anywhere, else None."""
+    and of other physics; locked, sprung: of preloads that are locked, of springs, connectors, contacts that let go and what
+    holds neutral motions; held: of supports that come and go, part of the reaction; pressures: (n,) of each pair; cycling:
+    (n,) multipliers that keep changing; supports: of each pair int H_k over all of the deformed contactor, (n_functions,),
+    where it may meet the target anywhere, else None."""
 
     problem: ContactProblem
     balance: Balance
@@ -202,7 +203,7 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
     for term in problem.terms:
         if isinstance(term, Springs):
             sprung -= term.evaluate(motion, motion).force
-    for name in (HeldMotions.name, Connectors.name):
+    for name in (HeldMotions.name, Connectors.name, Released.name):
         if name in balance.forces:
             sprung -= balance.forces[name][: len(sprung)]
     held = -balance.forces.get(Holds.name, np.zeros_like(displacement))

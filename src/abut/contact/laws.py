@@ -87,6 +87,23 @@ class Tied:
 
 
 @dataclass(frozen=True)
+class Gone:
+    """traction = 0 in all components, of what does not act; stiffness: as of ``Complementarity``."""
+
+    stiffness: float
+
+    def evaluate(self, jump: Array, traction: Array, state: LawState) -> LawResult:
+        """As in ``Law``, any c."""
+        n, c = jump.shape
+        return LawResult(
+            residual=-traction / self.stiffness,
+            by_jump=np.zeros((n, c, c)),
+            by_traction=np.broadcast_to(-np.eye(c) / self.stiffness, (n, c, c)),
+            closed=np.zeros(n, dtype=bool),
+        )
+
+
+@dataclass(frozen=True)
 class Coulomb:
     """Complementarity in the first component, Coulomb's law in the others, with a given status: theory (R5), (R6), (R7).
 

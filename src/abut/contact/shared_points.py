@@ -6,7 +6,7 @@ if the targets are rigid, or much stiffer, the pressures are not unique."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import combinations, combinations_with_replacement
 
@@ -64,15 +64,20 @@ def functions(space: PressureSpace, contactor: Surface, coupling: Coupling) -> F
     )
 
 
-def one_each(contacts: Sequence[Functions | None]) -> list[NDArray[np.bool_] | None]:
+def one_each(
+    contacts: Sequence[Functions | None], at_once: Callable[[int, int], bool] = lambda i, j: True
+) -> list[NDArray[np.bool_] | None]:
     """Which functions of each contact stay, (n,) bool, None for all; theory (P16). Those that go follow a neighbour.
 
     Of two at one point with one normal, whose targets lie side by side, the one of more weight stays, of equals the first.
-    Where targets lie one behind the other both stay: at most one of them closes."""
+    Where targets lie one behind the other both stay: at most one of them closes. So they do of two contacts of which never
+    both act: at_once says of two, by number, whether they do."""
     lost = [np.zeros(0 if functions is None else len(functions.node), dtype=bool) for functions in contacts]
     rivals: list[tuple[int, int, int, int]] = []
     given = [(i, functions) for i, functions in enumerate(contacts) if functions is not None]
     for (i, a), (j, b) in combinations_with_replacement(given, 2):
+        if i != j and not at_once(i, j):
+            continue
         for k, m in _side_by_side(a, b) if i != j else _twice(a):
             first = a.weight[k] >= b.weight[m] * (1.0 - EVEN)
             lost[j if first else i][m if first else k] = True

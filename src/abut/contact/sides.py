@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from itertools import combinations
 
@@ -192,12 +192,15 @@ def check_own(sides: Sides, contactor: Names, target: Names, where: str) -> None
         )
 
 
-def check_twice(names: Sequence[str], sides: Sequence[Sides]) -> None:
-    """Raise InputError where two contacts (``names``) would determine the pressure between the same facets twice.
+def check_twice(names: Sequence[str], sides: Sequence[Sides], meet: Callable[[int, int], bool]) -> None:
+    """Raise InputError where two contacts (``names``) that act at one time (``meet``) would determine the pressure between
+    the same facets twice.
 
     A facet may belong to any number of contacts: what counts is what it faces there."""
     facets = [tuple(_codes(_of(surface)) for surface in surfaces) for surfaces in sides]
     for first, second in _with_common(facets):
+        if not meet(first, second):
+            continue
         for turned in (False, True):
             mine, theirs = facets[first], facets[second][::-1] if turned else facets[second]
             common = [np.isin(a, b) for a, b in zip(mine, theirs)]

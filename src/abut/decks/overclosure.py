@@ -11,7 +11,7 @@ import numpy as np
 from abut.contact.overclosure import PressureOverclosure
 from abut.errors import InputError
 from abut.io.deck.reasons import DeckError
-from abut.io.deck.record import Deck
+from abut.io.deck.record import Deck, Pair
 from abut.model import Contact
 from abut.solution import Solution
 
@@ -61,10 +61,18 @@ def overclosure_notes(deck: Deck, soft: bool) -> list[str]:
         for what, kind, points in named
         if kind not in EXACT
     ] + [
-        f"contact '{pair.name}': *CHANGE SURFACE BEHAVIOR: exact contact before and after"
+        f"contact '{pair.name}': *CHANGE SURFACE BEHAVIOR: "
+        + ("exact contact before and after" if pair.span is None else _acts(pair, pair.span))
         for pair in deck.pairs
         if pair.changing
     ]
+
+
+def _acts(pair: Pair, span: tuple[int, int | None]) -> str:
+    """In which steps, and as what."""
+    what = "glued" if pair.tied else "never separates" if pair.bilateral else "exact contact"
+    first, after = span
+    return f"{what} from step {first} on" if after is None else f"{what} in steps {first} to {after - 1}"
 
 
 def overlaps(solution: Solution, laws: Mapping[str, PressureOverclosure]) -> list[str]:

@@ -1,15 +1,24 @@
-"""*MODEL CHANGE, TYPE=ELEMENT: bodies that go between steps, or come."""
+"""*MODEL CHANGE, TYPE=ELEMENT, and *CHANGE SURFACE BEHAVIOR: bodies that go between steps, or come; glue that does."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from abut.io.deck.groups import Piece
-from abut.io.deck.record import Deck
+from abut.io.deck.record import Deck, Pair
 from abut.io.deck.time_histories import ends
-from abut.model import Removal
+from abut.model import Contact, Removal
+
+
+def in_span(deck: Deck, pair: Pair, contact: Contact) -> Contact:
+    """A contact that acts in the steps of its pair alone, at once from their begin and to their end."""
+    if pair.span is None:
+        return contact
+    starts, (first, after) = (0.0, *ends(deck)), pair.span
+    return replace(contact, since=starts[first - 1], until=None if after is None else starts[after - 1])
 
 
 def removals(deck: Deck, parts: Mapping[str, Piece]) -> Iterator[Removal]:

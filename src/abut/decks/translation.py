@@ -28,7 +28,7 @@ from abut.decks.modes import loading_notes, modes, with_stiff_beams
 from abut.decks.nodal import equations, forces, supports, thin_supports
 from abut.decks.output import output_options, tables, with_tables
 from abut.decks.overclosure import overclosure_notes, own_laws, softened
-from abut.decks.passing import passing_notes, removals
+from abut.decks.passing import in_span, passing_notes, removals
 from abut.decks.plane import plane_of, thickness
 from abut.decks.plane_solids import plane_notes
 from abut.decks.response import responses, without_shaking
@@ -119,7 +119,7 @@ def translate(deck: Deck, soft: bool = False) -> Translation:
     contacts: list[Contact] = []
     for pair in deck.pairs:
         with reasons.gathered():
-            contacts.append(_contact(deck, groups, pair, hard, notes))
+            contacts.append(in_span(deck, pair, _contact(deck, groups, pair, hard, notes)))
     solids = _solids(deck, {name: piece for name, piece in parts.items() if name not in moving}, plane, reasons)
     rigid, bound = _referenced(deck, groups, {name: parts[name] for name in moving}, plane, reasons)
     notes += [*_idle(deck, groups), *unlisted_notes(deck), *beside_notes(deck)]

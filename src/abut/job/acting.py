@@ -122,8 +122,9 @@ def _removal(removal: Removal, step: Part) -> str:
 
 
 def _contact(contact: Any, step: Part, away: History) -> str:
-    if away is not None and away(step.end) > 0.0:  # a body of it is not there
-        return f"'{contact.name}' (open)"
+    if away is not None and away(step.end) > 0.0:  # it does not act, or a body of it is not there
+        fades = contact.times.left(max(step.begin, contact.times.last) + 0.5 * (step.end - step.begin)) > 0.0
+        return f"'{contact.name}' ({'let go' if fades else 'open'})"
     said = [
         f"{name} {change}"
         for name, history, counts in (

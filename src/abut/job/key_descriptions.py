@@ -357,6 +357,9 @@ MEANINGS: dict[str, dict[str, str]] = {
         "geometry": "curved: gaps are those between the smooth surfaces for which flat facets stand; faceted: those between "
         "the facets; flat surfaces do not differ",
         "adjust": "initial gaps and overlaps up to this size count as zero, before the offset is added [length]",
+        "since": "time from which on it acts; a tie holds the surfaces together as they are then",
+        "until": "time up to which it acts; left out: to the end",
+        "released": "time at which the forces that it had then are gone, in a straight line; left out: at once",
     },
     "OverclosureTable": {
         "points": "pairs of overclosure [length] and pressure [force per area] that increase from pressure 0 on; linear "

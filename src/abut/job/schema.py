@@ -238,6 +238,9 @@ class ContactTable(Table):
     friction: Friction = 0.0
     friction_amplitude: Points | None = None
     geometry: Annotated[str, OneOf(GEOMETRIES)] = Contact.geometry
+    since: Number = Contact.since
+    until: Number | None = None
+    released: Number | None = None
 
 
 class ProbeTable(Table):

@@ -9,6 +9,7 @@ from abut.contact.laws import Law
 from abut.contact.sides import Names, code, label, normalised
 from abut.errors import InputError
 from abut.model.conditions import Amplitude, History
+from abut.model.contact_times import ContactTimes
 from abut.model.given_friction import ROUGH, Friction, checked
 
 KINDS = ("contact", "tied", "bilateral")
@@ -101,6 +102,9 @@ class Contact:
     geometry : str
         "curved" takes what the smooth surface bulges out over flat facets off the gap (theory (S14)), "faceted" does
         not; flat surfaces do not differ.
+    since, until, released : float, optional
+        It acts from one time up to another one, at which its forces are taken off, at once or in a straight line up to
+        ``released``; theory (L18). A tie that begins later holds the surfaces together as they are then.
     contactor, target : str or sequence of str
         In place of ``first`` and ``second``.
     chosen : str
@@ -135,6 +139,9 @@ class Contact:
     friction: Friction = 0.0
     friction_amplitude: History = None
     geometry: str = "curved"
+    since: float = field(default=0.0, kw_only=True)
+    until: float | None = field(default=None, kw_only=True)
+    released: float | None = field(default=None, kw_only=True)
     contactor: Names = field(default="", kw_only=True)
     target: Names = field(default="", kw_only=True)
     chosen: str = field(default="", kw_only=True, compare=False, metadata=STATED)
@@ -160,6 +167,8 @@ class Contact:
                 f"{where}: pressure {self.pressure} with law {self.law}: that law looks at the pressure point by point, "
                 "where dual functions are negative; leave pressure out, or the law"
             )
+        if not self.times.checked(where).always and self.method != METHODS[0]:
+            raise InputError(f"{where}: since, until: go with method segment-to-segment; leave the other one out")
         self._check_bilateral(where)
         self._check_friction(where)
         checks.positive(self.epsilon, f"{where}: epsilon")
@@ -187,6 +196,16 @@ class Contact:
         """The same with the side ``number`` (0 or 1 of those named) for the contactor, and why."""
         sides = self.named
         return replace(self, contactor=sides[number], target=sides[1 - number], chosen=reason)
+
+    @property
+    def times(self) -> ContactTimes:
+        """While it acts."""
+        return ContactTimes(self.since, self.until, self.released)
+
+    @property
+    def locking(self) -> tuple[Amplitude, ...]:
+        """As of its ``times``."""
+        return self.times.locking
 
     @property
     def frictional(self) -> bool:

@@ -11,6 +11,7 @@ from abut.mesh.mesh import Mesh
 from abut.model.conditions import Equation, Support
 from abut.model.contact import METHODS, Contact
 from abut.model.solid import Solid
+from abut.model.step_ends import SAME
 
 KINEMATICS = ("small", "finite", "small-strain")
 
@@ -37,6 +38,11 @@ def _check_contact(contact: Contact) -> None:
     if contact.kind != "tied" and contact.method != METHODS[0]:
         raise InputError(
             f"contact '{contact.name}': method: {contact.method} goes with kinematics = \"small\" only; leave it out"
+        )
+    if contact.kind == "tied" and contact.since > SAME:
+        raise InputError(
+            f"contact '{contact.name}': since: a tie begins on the way with kinematics = \"small\" only: surfaces that have "
+            "slid do not face each other as at the outset; tie from the start, or model the next state as a job of its own"
         )
 
 

@@ -258,7 +258,7 @@ class Model:
 
     @cached_property
     def opened(self) -> dict[str, Away]:
-        """When contacts, by name, are open since a body of theirs is away."""
+        """When contacts, by name, are open since they do not act then, or a body of theirs is away."""
         return opened(self.mesh, self.contacts, self.removals, self.penetrations)
 
     @cached_property
@@ -272,8 +272,8 @@ class Model:
 
     @property
     def locking(self) -> tuple[History, ...]:
-        """With a corner where a preload is locked, a hold or a body comes or goes, modes are found: load steps end there."""
-        changing: tuple[Any, ...] = (*self.preloads, *self.holds, *self.removals, *self.modes)
+        """With a corner where a preload is locked, something comes or goes, modes are found: load steps end there."""
+        changing: tuple[Any, ...] = (*self.preloads, *self.holds, *self.contacts, *self.removals, *self.modes)
         return tuple(chain.from_iterable(item.locking for item in changing))
 
     def sides(self, contact: Contact) -> Sides:
@@ -394,4 +394,5 @@ class Model:
         for i, (contact, surfaces) in enumerate(zip(self.contacts, every)):
             if not self.finite or contact.kind == "tied":
                 check_own(surfaces, contact.contactor, contact.target, f"contacts[{i}]")
-        check_twice([contact.name for contact in self.contacts], every)
+        names, times = [contact.name for contact in self.contacts], [contact.times for contact in self.contacts]
+        check_twice(names, every, lambda i, j: times[i].meets(times[j]))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -98,16 +98,24 @@ class Removal:
         return tuple(Amplitude(((0.0, 0.0), (turn, 0.0), (END, 1.0))) for turn in inside)
 
 
+class Goes(Protocol):
+    """What is there for a part of the time."""
+
+    def away(self, time: float) -> bool:
+        """Whether it is not there in the step that ends at a time."""
+        ...
+
+
 @dataclass(frozen=True)
 class Away(Amplitude):
-    """1 while one of some bodies is not there, else 0."""
+    """1 while one of some things is not there, else 0."""
 
     points: tuple[tuple[float, float], ...] = RAMP
-    removals: tuple[Removal, ...] = ()
+    parts: tuple[Goes, ...] = ()
 
     def __call__(self, time: float) -> float:
         """The factor in the step that ends at a time."""
-        return float(any(removal.away(time) for removal in self.removals))
+        return float(any(part.away(time) for part in self.parts))
 
 
 @dataclass(frozen=True)
@@ -214,18 +222,18 @@ def _gated(load: Any, bodies: set[str], removals: Sequence[Removal]) -> Load:
 def opened(
     mesh: Mesh, contacts: Sequence[Contact], removals: Sequence[Removal], penetrations: Sequence[Penetration]
 ) -> dict[str, Away]:
-    """Of each contact, not tied, whose bodies go: when it is open. Raises InputError for sides of several bodies, and for
-    fluids in such contacts."""
+    """Of each contact that acts for a part of the time, or (ties stay) whose bodies go: when it is open. Raises InputError
+    for sides of several bodies, and for fluids in such contacts."""
     result: dict[str, Away] = {}
     passing = {removal.body for removal in removals}
-    for i, contact in enumerate(contacts if passing else ()):
-        if contact.kind == "tied":
-            continue
-        bodies = [_alone(bodies_of(mesh, side), passing, f"contacts[{i}]: a side") for side in contact.named]
-        own = tuple(removal for removal in removals if removal.body in set[str]().union(*bodies))
+    for i, contact in enumerate(contacts):
+        own: tuple[Goes, ...] = () if contact.times.always else (contact.times,)
+        if passing and contact.kind != "tied":
+            bodies = [_alone(bodies_of(mesh, side), passing, f"contacts[{i}]: a side") for side in contact.named]
+            own += tuple(removal for removal in removals if removal.body in set[str]().union(*bodies))
         if own and any(item.contact == contact.name for item in penetrations):
             raise InputError(
-                f"contacts[{i}]: a body of '{contact.name}', which a fluid enters, goes; leave one of both out"
+                f"contacts[{i}]: '{contact.name}', which a fluid enters, or a body of it, goes; leave one of both out"
             )
         if own:
             result[contact.name] = Away(RAMP, own)

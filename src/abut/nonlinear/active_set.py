@@ -97,7 +97,8 @@ class ActiveSet(Method[Trial]):
         """As in ``Method``. Raises SingularModelError where nothing holds a body."""
         if there.solved is None:
             _check_balance(self._solver)
-            if there.singular is not None and (self._tied.all() or self._aim == "this set"):
+            decided = self._tied | self._solver.system.away
+            if there.singular is not None and (decided.all() or self._aim == "this set"):
                 raise there.singular
             return End.STALLED
         if there.solved.changed.any():

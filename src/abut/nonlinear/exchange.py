@@ -61,7 +61,7 @@ def _pressures(system: Linearised) -> NDArray[np.bool_]:
     """(n,) multipliers that are pressures of points which open where they pull."""
     result = np.zeros(len(system), dtype=bool)
     for pair, part in zip(system.pairs, system.split(result)):
-        if not (pair.two_way or pair.smooth):
+        if not (pair.decided or pair.smooth):
             part[pair.normal] = True
     return result
 

@@ -146,7 +146,7 @@ def following_status(system: Linearised, state: State, increment: Increment, ask
     presses = state.closed & (state.multipliers > 0.0)
     wanted = wanted_status(system, state, increment, asked)
     for pair, own, part, status in zip(system.pairs, system.split(presses), system.split(gap), system.split(wanted)):
-        if pair.two_way or (guessed and (status[pair.normal] != OPEN).any()):
+        if pair.decided or (guessed and (status[pair.normal] != OPEN).any()):
             continue
         near = own[pair.normal] & (
             part[pair.normal] < increment.settings.newton.bent * pair.size * pair.weight[pair.normal]
@@ -170,7 +170,7 @@ def without_pulling(system: Linearised, state: State, there: State, increment: I
     status = state.status.copy()
     parts = zip(system.pairs, system.split(status), system.split(state.closed), system.split(there.multipliers))
     for pair, own, closed, multipliers in parts:
-        if pair.two_way or pair.smooth or not closed[pair.normal].any():
+        if pair.decided or pair.smooth or not closed[pair.normal].any():
             continue
         pulls = closed[pair.normal] & (multipliers[pair.normal] < -least)
         if (closed[pair.normal] & ~pulls).any():
@@ -192,7 +192,7 @@ def nearest_kept(system: Linearised, before: State, state: State, near: float) -
     for pair in system.pairs:
         own = slice(first, first := first + len(pair))
         closed, was = state.closed[own][pair.normal], before.closed[own][pair.normal]
-        if pair.two_way or closed.any() or not was.any():
+        if pair.decided or closed.any() or not was.any():
             continue
         clearance = (gaps[own] / (pair.weight * pair.size))[pair.normal]
         clearance = np.where(idle[own][pair.normal], np.inf, clearance)

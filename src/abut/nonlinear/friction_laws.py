@@ -27,7 +27,9 @@ def next_status(system: Linearised, state: State, increment: Increment, gap: Vec
     gaps, multipliers, before = (system.split(part) for part in (gap, state.multipliers, state.status))
     return system.join(
         [
-            np.full(len(pair), CLOSED) if pair.two_way else _wanted(pair, system.factors, gap, part, status, small)
+            np.full(len(pair), CLOSED if pair.two_way else OPEN)
+            if pair.decided
+            else _wanted(pair, system.factors, gap, part, status, small)
             for pair, gap, part, status in zip(system.pairs, gaps, multipliers, before)
         ]
     )

@@ -155,11 +155,11 @@ def foreseen(solver: Prepared, state: State, wanted: NDArray[np.int8]) -> NDArra
 
 def _beside(pair: Pair) -> NDArray[np.bool_]:
     """Multipliers that never open by themselves, (n,)."""
-    return np.arange(len(pair)) >= (0 if pair.two_way else len(pair.space))
+    return np.arange(len(pair)) >= (0 if pair.decided else len(pair.space))
 
 
 def _with(pair: Pair, wanted: NDArray[np.int8], closed: NDArray[np.bool_]) -> NDArray[np.int8]:
-    if pair.two_way:
+    if pair.decided:
         return wanted
     shut = np.asarray(pair.of_functions(closed[pair.normal]))
     return np.where(shut, np.where(wanted == OPEN, CLOSED, wanted), OPEN)

@@ -16,7 +16,7 @@ def hanging(problem: ContactProblem, state: State, changing: NDArray[np.bool_]) 
     told, first = [], 0
     for pair in problem.pairs:
         own = slice(first, first := first + len(pair))
-        if pair.two_way:
+        if pair.decided:
             continue
         pressed, restless = (_nodes(pair, part[own][pair.normal]) for part in (state.closed, changing))
         if len(pressed) == 1:

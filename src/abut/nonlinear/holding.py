@@ -148,7 +148,9 @@ def _closed(system: Linearised, rigid: RigidModes, state: State) -> list[NDArray
     for pair, closed, slips in zip(system.pairs, system.split(state.closed), system.split(state.slipping)):
         resists = closed & ~slips
         resists[pair.normal] = closed[pair.normal]
-        grams.append(resistance_of_rows(rigid, pair.rows[np.ones(len(pair), bool) if pair.tied else resists]))
+        grams.append(
+            resistance_of_rows(rigid, pair.rows[np.ones(len(pair), bool) if pair.tied and pair.two_way else resists])
+        )
     return grams
 
 

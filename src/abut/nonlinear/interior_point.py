@@ -43,7 +43,7 @@ class Manner:
 class Programme:
     """A load step on all functions of all pairs that are not tied. normal: (k,) their pressures' numbers; scale: (k,) gap
     per pressure; rubs: (r,) functions with friction; along: (r, d - 1) their tractions' numbers, -1 where there is none;
-    idle: numbers of tractions without friction."""
+    idle: numbers of tractions without friction, and of what does not act."""
 
     solver: Prepared
     normal: Numbers
@@ -57,9 +57,10 @@ class Programme:
     @classmethod
     def of(cls, solver: Prepared, settings: Settings) -> Programme:
         system, first, normal, along = solver.system, 0, [], []
+        away = np.flatnonzero(system.away)
         width = max((pair.index.shape[1] for pair in system.pairs if pair.frictional), default=1) - 1
         for pair in system.pairs:
-            if not pair.two_way:
+            if not pair.decided:
                 beside = np.full((len(pair.space), width), -1)
                 if pair.frictional:
                     beside = np.where(pair.index[:, 1:] >= 0, pair.index[:, 1:] + first, -1)
@@ -80,13 +81,13 @@ class Programme:
         holds = programme.bound(np.ones(len(numbers)))[0] > 0.0
         rubs = np.flatnonzero(holds & (tangents >= 0).any(axis=1))
         idle = tangents[~holds]
-        return replace(programme, rubs=rubs, along=tangents[rubs], idle=idle[idle >= 0])
+        return replace(programme, rubs=rubs, along=tangents[rubs], idle=np.concatenate([idle[idle >= 0], away]))
 
     def bound(self, pressure: Vector) -> tuple[Vector, Vector]:
         """Of the tractions of ``rubs`` under pressures (k,) of all functions, and its derivative."""
         system, first, parts = self.solver.system, 0, []
         for pair in system.pairs:
-            if not pair.two_way:
+            if not pair.decided:
                 own = pressure[first : first + len(pair.space)]
                 parts.append(_bound(pair, system.factors, own, self.settings.interior.steepest))
                 first += len(pair.space)

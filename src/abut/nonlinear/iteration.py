@@ -76,7 +76,7 @@ def next_active(
     small = increment.settings.newton.balanced * max(reference, NOTHING)
     tension = np.where(closed & ~tied, -state.multipliers, 0.0)
     penetration = np.where(~closed, push, 0.0)
-    wanted = np.where(closed, tension <= small, penetration > small) | tied
+    wanted = (np.where(closed, tension <= small, penetration > small) | tied) & ~system.away
     return wanted, np.maximum(np.maximum(tension, penetration), 0.0)
 
 

@@ -93,7 +93,7 @@ def extrapolated(problem: ContactProblem, earlier: State, before: State, time: f
     ahead = before.multipliers + ratio * (before.multipliers - earlier.multipliers)
     first = 0
     for pair in problem.pairs:
-        if not pair.two_way:
+        if not pair.decided:
             here = slice(first + pair.normal.start, first + pair.normal.stop)
             ahead[here] = np.where(
                 before.multipliers[here] > 0.0, np.maximum(ahead[here], 0.0), before.multipliers[here]

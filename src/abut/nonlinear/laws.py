@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.contact.laws import Complementarity, ConstraintFunction, Coulomb, Law, Tied
+from abut.contact.laws import Complementarity, ConstraintFunction, Coulomb, Gone, Law, Tied
 from abut.contact.smooth_friction import SmoothCoulomb
 from abut.problem.laws import LawRows, at_multipliers, giving
 from abut.problem.linearised import Linearised
@@ -29,7 +29,7 @@ class Asked:
 
     def of(self, pair: Pair, system: Linearised) -> Law | None:
         """The law of a pair, if it is another one than complementarity or Coulomb's."""
-        if not pair.smooth:
+        if not pair.smooth or pair.away:
             return None
         law = pair.contact.law
         if not isinstance(law, str):
@@ -58,6 +58,8 @@ def at_status(
 ) -> LawRows:  # fmt: skip
     """The law of one pair with the status as it is; gap, multipliers, closed, slipping: (n,)."""
     law: Law = Tied() if pair.tied else Complementarity(pair.stiffness)
-    if pair.frictional:
+    if pair.away:
+        law = Gone(pair.stiffness)
+    elif pair.frictional:
         law = Coulomb(pair.stiffness, pair.friction(system.factors))
     return at_multipliers(pair, law, gap, multipliers, closed, slipping if pair.frictional else None)

@@ -28,7 +28,7 @@ ARRAYS = ("unknowns", "multipliers", "status")  # of the state
 HISTORY, CONTACT, DRAG = "history.", "contact.", "drag"  # what the names of the other ones begin with, or are
 RATES = ("velocities", "accelerations")  # with a time integration
 MOVED = "displacement"  # of all points, with small displacements
-FIELDS = ("slips", "inner", "following", "fit")  # of a contact's history
+FIELDS = ("slips", "inner", "following", "fit", "began")  # of a contact's history
 COUNTS, SIZES = ("step", "iteration", "active", "changed"), ("residual", "contact_residual", "penetration", "seconds")
 NAMED = 4  # differences of a changed model that the message lists
 

@@ -64,7 +64,7 @@ class DistributedBodies:
         """Have every process assemble its part."""
         model = self.model
         varying = (
-            model.holds or model.springs or model.penetrations or model.physics or model.connectors
+            model.holds or model.springs or model.penetrations or model.physics or model.connectors or model.opened
         )  # a stiffness linearised anew
         again = bool(model.finite or varying)  # iterations ask for it anew
         arguments = [(replace(self.cellwise, mesh=piece.mesh), again) for piece in self.pieces]

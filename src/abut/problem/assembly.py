@@ -36,6 +36,7 @@ from abut.problem.penetrations import Penetrations
 from abut.problem.preloads import LockedPreloads
 from abut.problem.problem import ContactProblem
 from abut.problem.reference import Reference
+from abut.problem.released import Released
 from abut.problem.restraint import Restraint, helped, require_balance, require_unmoved, restraint
 from abut.problem.springs import Springs
 from abut.problem.terms import Term
@@ -97,7 +98,8 @@ def assemble(
     _check_finite(reduced.diagonal(), loaded.forces)
     bodies = _bodies(model, loaded, backend)
     fluids = Penetrations.of(model, every)
-    beside = [*_beside(model, constraints, loaded), *(term for term in (sprung, held, passing, fluids, joined) if term)]
+    found = (sprung, held, passing, fluids, joined, Released.of(model))
+    beside = [*_beside(model, constraints, loaded), *(term for term in found if term)]
     own = _own(model, [term.name for term in (bodies, *beside)])
     beside += own
     affine = not (model.finite or model.physics or model.connectors) and _is_constant(model, [bodies, *beside])

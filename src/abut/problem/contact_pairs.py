@@ -69,18 +69,25 @@ def pairs(model: Model, constraints: Constraints, couple: Couple = couple) -> li
             result.append(pair(model, back, constraints, couple, (sides[1], sides[0])))
     if len(result) > 1 or any(each.contactor.parts is not None for each in result):
         place = one_place(model.mesh.points, glue(model))
-        kept = one_each([_shared(each, place) for each in result])
+        times = [each.contact.times for each in result]
+        kept = one_each([_shared(each, place) for each in result], lambda i, j: times[i].meets(times[j]))
         result = [
             each if keep is None else _in_space(model, each, reduce(each.space, each.coupling, keep), constraints)
             for each, keep in zip(result, kept)
         ]
     tied_together = bool(model.equations or model.rigid or model.couplings)
+    result = [replace(p, gone=gone(model, p.contact)) for p in result]
     return [replace(p, repeated=True) if tied_together and repeats(p.operator) else p for p in result]
 
 
+def gone(model: Model, contact: Contact) -> int | None:
+    """As in ``Pair``."""
+    return None if contact.times.always else model.histories.index(model.opened[contact.name])
+
+
 def glue(model: Model) -> list[Glue]:
-    """Points of the sides of all ties."""
-    ties = [model.sides(contact) for contact in model.contacts if contact.kind == "tied"]
+    """Points of the sides of all ties that hold all the time."""
+    ties = [model.sides(contact) for contact in model.contacts if contact.kind == "tied" and contact.times.always]
     return [(contactor.node_ids, target.node_ids) for contactor, target in ties]
 
 

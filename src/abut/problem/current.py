@@ -134,8 +134,8 @@ class Current(Kinematics):
         """As in ``Kinematics``."""
         pair, now = self.pair, self.at(frame, rest, rest.displacement)
         seen = ~bare(now.pair)
-        if pair.two_way:
-            return seen
+        if rest.away or pair.two_way:
+            return pair.of_functions(seen & (not rest.away))
         weight = (
             pair.weight[pair.normal] if pair.smooth else now.pair.space.weight
         )  # of what the gap is integrated over
@@ -147,6 +147,7 @@ class Current(Kinematics):
         multipliers, options = now.multipliers, self._options(now.displacement - before)
         mixture = self._mixture(contactor, target, frame.inner)
         unmixed = self.pair if frame.following is None else led(self.pair, frame.following)
+        unmixed = replace(unmixed, away=True) if now.away else unmixed
         pair = unmixed if mixture is None else mixed_part(unmixed, mixture)
         down = weights_of_rows(pair.space.transfer.T)
         normals = self._normals.at(contactor)

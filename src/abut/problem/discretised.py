@@ -114,8 +114,9 @@ class Discretised:
     def placed(self, state: State) -> list[Placed]:
         """Each pair in a state."""
         here, parts = self.displacement(state), (self.split(state.multipliers), self.split(state.closed))
+        factors = weights(self.model.histories, state.time)
         return [
-            Placed(here, values, closed, self.added(pair, state.time))
+            Placed(here, values, closed, self.added(pair, state.time), pair.acting(factors).away)
             for pair, values, closed in zip(self.pairs, *parts)
         ]
 

@@ -56,8 +56,7 @@ def expanded(
     whole = added_up([share.force for share in shares], len(here))
     stiff = [(share.tangent, len(share.force)) for share in shares if share.tangent is not None]
     if change.any():
-        moved = [tangent.internal(change[:size]) for tangent, size in stiff]
-        whole = whole + added_up(moved, len(here))
+        whole = whole + added_up([tangent.internal(change[:size]) for tangent, size in stiff], len(here))
         if bending is not None:
             whole[:n] -= bending @ change[:n]
     by_contact = None if bending is None else constraints.reduce(bending)
@@ -73,7 +72,8 @@ def expanded(
     largest = 0.0 if problem.constant else max(float(np.abs(share.force[:n]).max(initial=0.0)) for share in shares)
     near = Linearised(
         now.time, factors, stiffness, force, [each.pair for each in contacts], problem.operator, gap, problem.motions,
-        problem.restraint, force, problem.unit or unit_of(stiffness), forgotten=_idle(contacts), bending=by_contact,
+        problem.restraint.acting(factors), force, problem.unit or unit_of(stiffness), forgotten=_idle(contacts),
+        bending=by_contact,
         shares={} if problem.constant else problem.named(shares), sizes=problem.sizes(shares, (before, now), stiffness),
         even=problem.constraints.others is None or all(share.symmetric for share in shares), largest=largest,
     )  # fmt: skip

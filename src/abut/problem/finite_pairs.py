@@ -19,7 +19,7 @@ from abut.model import Contact, Model
 from abut.model.symmetry import held_directions
 from abut.problem.constraints import Constraints
 from abut.problem.contact_normals import moving_smoothing
-from abut.problem.contact_pairs import glue, pair, reach_of, with_friction
+from abut.problem.contact_pairs import glue, gone, pair, reach_of, with_friction
 from abut.problem.dual_functions import Mixture
 from abut.problem.held_multipliers import held, without_held
 from abut.problem.pair import Moving, Pair
@@ -35,7 +35,10 @@ def finite_pairs(model: Model, constraints: Constraints) -> list[Pair]:
         _tie(model, contact, constraints) if contact.kind == "tied" else finite_pair(model, contact, constraints)
         for contact in model.contacts
     ]
-    return [replace(each, repeated=constraints.together(each.contactor.node_ids, model.dim)) for each in made]
+    return [
+        replace(each, repeated=constraints.together(each.contactor.node_ids, model.dim), gone=gone(model, each.contact))
+        for each in made
+    ]
 
 
 def _tie(model: Model, contact: Contact, constraints: Constraints) -> Pair:

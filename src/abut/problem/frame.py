@@ -16,7 +16,8 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True)
 class PairFrame:
     """Of one contact pair. At small displacements, with friction: slipped: (n_tangential,) weighted tangential jumps from
-    which slip counts, theory (R3); approached: (n_tangential,) what of them is no slip, theory (R4).
+    which slip counts, theory (R3); approached: (n_tangential,) what of them is no slip, theory (R4). Of a tie that begins on
+    the way: began: (n,) weighted jumps from which it holds.
 
     At current positions: past: from where slip counts, None without friction; inner: (n_facets,) above zero where functions
     of a dual space are the ordinary ones, None for nowhere, theory (P9), as named in ``edge_trials``; following:
@@ -29,6 +30,7 @@ class PairFrame:
     fit: Array | None = None
     slipped: Array | None = None
     approached: Array | None = None
+    began: Array | None = None
 
 
 @dataclass(frozen=True)

@@ -21,12 +21,13 @@ Array = NDArray[np.float64]
 @dataclass(frozen=True)
 class Placed:
     """A pair in a state. displacement: (dim n_points,) of all points; multipliers, closed: (n,) of the pair; offset: what is
-    added to all gaps then."""
+    added to all gaps then; away: whether it does not act."""
 
     displacement: Array
     multipliers: Array
     closed: NDArray[np.bool_]
     offset: float
+    away: bool = False
 
 
 @dataclass(frozen=True)

@@ -112,6 +112,11 @@ class Linearised:
         return self.join([np.full(len(pair), pair.two_way) for pair in self.pairs]).astype(bool)
 
     @property
+    def away(self) -> NDArray[np.bool_]:
+        """(n,) multipliers of contacts that do not act."""
+        return self.join([np.full(len(pair), pair.away) for pair in self.pairs]).astype(bool)
+
+    @property
     def scale(self) -> Vector:
         """(n,) weighted gap per pressure, theory (L2)."""
         return self.join([pair.scale for pair in self.pairs])

@@ -80,7 +80,7 @@ def remembered(
             force = landed(kind.pair, closing, system.factors)
             share = force.unsure, force.limit
         past = kind.past(end.displacement, end.closed)
-        result[name] = ContactHistory(slid.get(name), past, part.inner, part.following, part.fit, share)
+        result[name] = ContactHistory(slid.get(name), past, part.inner, part.following, part.fit, share, part.began)
     return result
 
 

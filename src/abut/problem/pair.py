@@ -102,6 +102,10 @@ class Pair:
     carried: NDArray[np.bool_] | None = None  # (n,) what the target alone sees, as supports hold the contactor's point
     values: FrictionValues | None = None  # the same: its coefficient
     moving: Moving | None = None  # with finite kinematics
+    gone: int | None = (
+        None  # number of the history that is 1 while it does not act, of one that acts for a part of the time
+    )
+    away: bool = False  # whether it does not act now
 
     @property
     def tied(self) -> bool:
@@ -109,8 +113,14 @@ class Pair:
 
     @property
     def two_way(self) -> bool:
-        """Whether its multipliers are closed whatever their sign: of a tie, and of bilateral contact, theory (L16)."""
-        return self.contact.kind in TWO_WAY
+        """Whether its multipliers are closed whatever their sign: of a tie, and of bilateral contact, theory (L16), while
+        they act."""
+        return self.contact.kind in TWO_WAY and not self.away
+
+    @property
+    def decided(self) -> bool:
+        """Whether no law decides what is closed: all of it, whatever the sign, or nothing."""
+        return self.two_way or self.away
 
     @property
     def frictional(self) -> bool:
@@ -150,8 +160,14 @@ class Pair:
         return self.values.bound(factors)
 
     def at(self, factors: NDArray[np.float64]) -> Pair:
-        """The pair with the friction of a moment, where the model's histories are at ``factors``."""
-        return self if self.values is None else replace(self, values=self.values.at(factors))
+        """The pair with the friction of a moment, where the model's histories are at ``factors``, and whether it acts."""
+        pair = self if self.values is None else replace(self, values=self.values.at(factors))
+        return pair.acting(factors)
+
+    def acting(self, factors: NDArray[np.float64]) -> Pair:
+        """The pair, which knows whether it acts where the model's histories are at ``factors``."""
+        away = self.gone is not None and bool(factors[self.gone] > 0.0)
+        return self if away == self.away else replace(self, away=away)
 
     @property
     def steepest(self) -> NDArray[np.float64]:

@@ -17,6 +17,7 @@ from abut.problem.frame import Frame
 from abut.problem.laws import LawRows
 from abut.problem.linearised import Linearised
 from abut.problem.pair import Pair
+from abut.problem.released import Released
 from abut.problem.sample_gaps import apart
 from abut.solution.state import State, at_rest
 
@@ -123,6 +124,9 @@ class ContactProblem(Discretised):
         history = before.history
         for name, share in system.shares.items():
             history = history.with_term(name, share.history)
+        for term in self.terms:
+            if isinstance(term, Released):
+                history = term.remembered(history, now, system)
         contacts = load_steps.remembered(self, before, frame, now, system)
         rates = self.rates(before, now.time, self.values(now))
         return replace(now, history=replace(history, contacts=contacts, drag=None), rates=rates and rates.converged)

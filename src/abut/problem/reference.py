@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +21,10 @@ class Reference(Kinematics):
     """Of a contact or a tie. pair: as from ``contact_pairs.pairs``."""
 
     def frame(self, known: ContactHistory, before: Placed, near: Placed | None) -> PairFrame:
-        """As in ``Kinematics``: tangential jumps in ``before``, and what is open moved on until it closes, theory (R3)."""
+        """As in ``Kinematics``: tangential jumps in ``before``, and what is open moved on until it closes, theory (R3). Of a
+        tie that begins on the way the jumps where it did not act last."""
+        if self.pair.tied and not self.pair.contact.times.always:
+            return PairFrame(began=self.pair.rows @ before.displacement if before.away else known.began)
         if not self.pair.frictional:
             return PairFrame()
         gap = self._gap(before)
@@ -34,15 +37,20 @@ class Reference(Kinematics):
 
     def at(self, frame: PairFrame, now: Placed, before: Array) -> ContactNow:
         """As in ``Kinematics``, theory (F9)."""
-        gap = self._gap(now)
+        pair = replace(self.pair, away=True) if now.away else self.pair
+        gap = now.offset * pair.weight if now.away and pair.tied else self._gap(now)
         if frame.slipped is not None:
-            gap[self.pair.tangential] -= frame.slipped
-        return ContactNow(self.pair, gap, self.pair.rows, None, np.zeros(len(self.pair.space), dtype=bool))
+            gap[pair.tangential] -= frame.slipped
+        if frame.began is not None and not now.away:
+            gap -= frame.began
+        return ContactNow(pair, gap, pair.rows, None, np.zeros(len(pair.space), dtype=bool))
 
     def touching(self, rest: Placed, frame: PairFrame) -> NDArray[np.bool_]:
         """As in ``Kinematics``."""
         pair = self.pair
         near = self._gap(rest) <= TOUCHING * pair.size * pair.weight
+        if rest.away:
+            return np.zeros(len(pair), dtype=bool)
         return pair.of_functions(near[pair.normal]) if pair.frictional else pair.two_way | near
 
     def _gap(self, at: Placed) -> Array:

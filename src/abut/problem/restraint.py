@@ -72,10 +72,18 @@ class Restraint:
         )
 
     def at(self, factors: NDArray[np.float64]) -> Restraint:
-        """With the friction of a moment, where the model's histories are at ``factors``, (n_histories,)."""
+        """With the friction of a moment, where the model's histories are at ``factors``, (n_histories,), and the contacts
+        that act then."""
         if all(pair.values is None or pair.values.history is None for pair in self.pairs):
+            return self.acting(factors)
+        return replace(self, pairs=[pair.at(factors) for pair in self.pairs]).acting(factors)
+
+    def acting(self, factors: NDArray[np.float64]) -> Restraint:
+        """With the contacts that act at a moment."""
+        pairs = [pair.acting(factors) for pair in self.pairs]
+        if not any(pair.away for pair in pairs):
             return self
-        return replace(self, pairs=[pair.at(factors) for pair in self.pairs])
+        return _restraint(self.rigid, self.constraints, self.supports, pairs, self.bare)
 
     def complete(
         self, force: NDArray[np.float64], active: NDArray[np.bool_], gap: NDArray[np.float64]
@@ -88,11 +96,12 @@ class Restraint:
         result = active.copy()
         splits = np.cumsum([len(p) for p in self.pairs])[:-1]
         for p, g, chosen in zip(self.pairs, np.split(gap, splits), np.split(result, splits)):
-            if p.two_way or not len(p):
+            if p.decided or not len(p):
                 continue
             clearance = (g / (p.scale * p.stiffness * p.size))[p.normal]  # over the facet size
             chosen |= p.of_functions(clearance <= clearance.min() + 0.01)
-        return result if self._holds(result) else np.ones_like(active)
+        every = [np.full(len(p), not p.away) for p in self.pairs]
+        return result if self._holds(result) else np.concatenate(every)
 
     def met_first(
         self, force: NDArray[np.float64], active: NDArray[np.bool_], gap: NDArray[np.float64]
@@ -114,7 +123,7 @@ class Restraint:
         """What a motion (n_free,) closes first, and what is within a hundredth of a facet then; of bodies as they were."""
         clearances, closings = [], []
         for p, g in zip(self.pairs, np.split(gap, np.cumsum([len(p) for p in self.pairs])[:-1])):
-            one_way = not p.two_way and len(p) > 0
+            one_way = not p.decided and len(p) > 0
             unit = (p.scale * p.stiffness * p.size)[p.normal] if one_way else np.zeros(0)  # over the facet size
             clearances.append(g[p.normal] / unit if one_way else unit)
             closings.append(-(p.operator @ way)[p.normal] / unit if one_way else unit)
@@ -156,6 +165,8 @@ class Restraint:
         stays = np.linalg.norm(plain - free @ (free.T @ plain), axis=0) < 1e-6 * np.linalg.norm(plain, axis=0)
         opens = np.zeros(plain.shape[1])
         for pair in self.pairs:
+            if pair.away:
+                continue
             operator = pair.operator if pair.tied else pair.operator[pair.normal]
             size = np.asarray(abs(operator).sum(axis=1)).ravel()[:, None]  # none where no target is opposite yet
             moved = np.asarray(operator @ moves) / np.where(size > 0.0, size, 1.0)
@@ -250,6 +261,8 @@ def _drives(work: NDArray[np.float64], size: float) -> bool:
 def _pushes(pair: Pair, moves: NDArray[np.float64], active: NDArray[np.bool_] | None = None) -> NDArray[np.float64]:
     """What a pressure of each multiplier of a pair, or of those ``active``, does on the motions, (rows, m), each of unit
     length; those of ties both ways, and none of those that do nothing but rounding."""
+    if pair.away:
+        return np.zeros((0, moves.shape[1]))
     if pair.frictional:
         return _pushes_and_drags(pair, moves, active)
     operator = pair.operator

@@ -22,7 +22,8 @@ class ContactHistory:
     slips: (n, 4) of its multipliers, with friction: in the step that ended, in all steps in contact, what did not count in
     the step because it only came closer, and 1 where nothing did, for want of a past. The rest at large displacements only:
     past: from where the next step's slip counts; inner, following, fit: what was fixed during the step that ended, as in
-    ``abut.problem.frame.PairFrame``; landed: forces of friction, as in ``abut.problem.step_error.Landed``."""
+    ``abut.problem.frame.PairFrame``; landed: forces of friction, as in ``abut.problem.step_error.Landed``. began: (n,) of a
+    tie that begins on the way, jumps from which it holds."""
 
     slips: Vector | None = None
     past: Past | None = None
@@ -30,6 +31,7 @@ class ContactHistory:
     following: NDArray[np.int64] | None = None
     fit: Vector | None = None
     landed: tuple[float, float] | None = None
+    began: Vector | None = None
 
 
 @dataclass(frozen=True)

@@ -16,15 +16,18 @@ from abut.io.deck.record import NO_FRICTION, Behaviour, Friction, GeneralContact
 @dataclass(frozen=True)
 class Interaction:
     """What surfaces do to each other. overclosure: HARD, LINEAR, ...; bilateral: they never separate (NO SEPARATION);
-    changing: the pressure over the overclosure is another one in a later step."""
+    changing: the pressure over the overclosure is another one in a later step; kinds: steps from which on surfaces are glued
+    (TIED), never separate (NO SEPARATION), or are in contact (HARD)."""
 
     overclosure: str = "HARD"
     behaviour: Behaviour = ()
     friction: Friction = NO_FRICTION
     bilateral: bool = False
     changing: bool = False
+    kinds: tuple[tuple[int, str], ...] = ()
 
 
+BILATERAL = "NO SEPARATION"
 FINE = 40  # points of an exponential curve over the clearance in which the pressure falls to a hundredth: 0.2 % off between
 OVERCLOSURES = ("HARD", "LINEAR", "EXPONENTIAL", "TABULAR", "TRUNCATEDLINEAR", "TIED", "SCALEFACTOR")
 
@@ -50,11 +53,12 @@ def pairs(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> tuple[Pai
 
 
 def _check_once(every: Sequence[Pair], reasons: Reasons) -> None:
-    """``reasons`` gets pairs of surfaces that are a pair already, with either as the slave."""
+    """``reasons`` gets pairs of surfaces that are a pair already, with either as the slave; those of one line act after each
+    other."""
     known: dict[frozenset[str], Pair] = {}
     for pair in every:
         first = known.setdefault(frozenset((pair.slave, pair.master)), pair)
-        if first is not pair:
+        if first is not pair and first.place != pair.place:
             text = (
                 f"'{pair.slave}' and '{pair.master}' are a pair already ({first.place}): contact between them would count "
                 "twice; take one of the two out"
@@ -82,7 +86,7 @@ def _contact_pairs(
     card: Card, mesh: MeshCards, interactions: Mapping[str, Interaction], clearances: dict[tuple[str, str], Card]
 ) -> list[Pair]:
     """The pairs of one card; takes what belongs to them from ``clearances``."""
-    interaction, result = card.need("INTERACTION"), []
+    interaction, result = card.need("INTERACTION"), list[Pair]()
     if interaction.upper() not in interactions:
         raise card.unknown(f"no *SURFACE INTERACTION named {interaction!r}{nearest(interaction, interactions)}")
     properties = interactions[interaction.upper()]
@@ -93,23 +97,33 @@ def _contact_pairs(
             clearance = as_float(given.need("VALUE"))
             if clearance is None:
                 raise given.error(f"VALUE: expected a number, got {given.need('VALUE')!r}")
-        tied, name = properties.overclosure == "TIED", f"{slave}-{master}"
-        rub = NO_FRICTION if tied else properties.friction
-        distance = _adjust(card, mesh)
-        pair = Pair(name, slave, master, tied, properties.overclosure, distance, clearance, line.place, rub)
-        if properties.bilateral and rub != NO_FRICTION:
+        pair = Pair(
+            f"{slave}-{master}", slave, master, False, properties.overclosure, _adjust(card, mesh), clearance, line.place,
+            behaviour=properties.behaviour, changing=properties.changing,
+        )  # fmt: skip
+        result += _phases(pair, properties, line, interaction)
+    return result
+
+
+def _phases(pair: Pair, properties: Interaction, line: Line, interaction: str) -> Iterator[Pair]:
+    """A pair, or one for each span of steps in which its surfaces are glued, never separate, or are in contact."""
+    kinds = properties.kinds or ((1, _kind(properties.overclosure, properties.bilateral)),)
+    ends = [*(step for step, _ in kinds[1:]), None]
+    for (begin, kind), end in zip(kinds, ends):
+        rub = NO_FRICTION if kind == "TIED" else properties.friction
+        if kind == BILATERAL and rub != NO_FRICTION:
             raise line.error(
                 f"INTERACTION={interaction}: NO SEPARATION goes without friction; take *FRICTION out, or NO SEPARATION"
             )
-        result.append(
-            replace(
-                pair,
-                behaviour=properties.behaviour,
-                bilateral=properties.bilateral and not tied,
-                changing=properties.changing,
-            )
+        yield replace(
+            pair,
+            name=pair.name if begin == 1 else f"{pair.name} from step {begin}",
+            tied=kind == "TIED",
+            bilateral=kind == BILATERAL,
+            friction=rub,
+            overclosure="TIED" if kind == "TIED" else "HARD" if pair.overclosure == "TIED" else pair.overclosure,
+            span=(begin, end) if len(kinds) > 1 else None,
         )
-    return result
 
 
 def general_contact(cards: Sequence[Card], reasons: Reasons) -> GeneralContact | None:
@@ -192,8 +206,8 @@ def _interactions(cards: Sequence[Card], reasons: Reasons) -> dict[str, Interact
             elif card.key == "CHANGESURFACEBEHAVIOR":
                 law = card
             elif card.key == "SURFACEBEHAVIOR" and law is not None:
-                name, before, law = changes(law, result), law, None
-                result[name] = _other_law(result[name], before, card)
+                name, law = changes(law, result), None
+                result[name] = _other_law(result[name], step, card)
             elif card.key == "SURFACEBEHAVIOR":
                 if not current:
                     raise card.error("it must follow a *SURFACE INTERACTION")
@@ -201,7 +215,7 @@ def _interactions(cards: Sequence[Card], reasons: Reasons) -> dict[str, Interact
                     result[current],
                     overclosure=_overclosure(card),
                     behaviour=_behaviour(card),
-                    bilateral=card.has("NO SEPARATION"),
+                    bilateral=card.has(BILATERAL),
                 )
             elif card.key == "CHANGEFRICTION":
                 change = changes(card, result)
@@ -214,15 +228,17 @@ def _interactions(cards: Sequence[Card], reasons: Reasons) -> dict[str, Interact
     return result
 
 
-def _other_law(properties: Interaction, change: Card, card: Card) -> Interaction:
-    """With another law from a step on, which makes no difference to contact without penetration. Raises InputError where
-    surfaces are glued, or never separate, before or after."""
-    if "TIED" in (properties.overclosure, _overclosure(card)) or properties.bilateral or card.has("NO SEPARATION"):
-        raise change.refusal(
-            "surfaces that are glued, or cannot separate, in some steps only are not supported; make a deck for each state",
-            "CHANGE SURFACE BEHAVIOR",
-        )
+def _other_law(properties: Interaction, step: int, card: Card) -> Interaction:
+    """With another law from a step on: which one of contact makes no difference to contact without penetration."""
+    kinds = properties.kinds or ((1, _kind(properties.overclosure, properties.bilateral)),)
+    now = _kind(_overclosure(card), card.has(BILATERAL))
+    if now != kinds[-1][1]:
+        return replace(properties, changing=True, kinds=(*kinds, (step, now)))
     return replace(properties, changing=True)
+
+
+def _kind(overclosure: str, bilateral: bool) -> str:
+    return "TIED" if overclosure == "TIED" else BILATERAL if bilateral else "HARD"
 
 
 def _overclosure(card: Card) -> str:

@@ -85,12 +85,14 @@ def friction_notes(cards: Sequence[Card]) -> list[str]:
 
 
 def without_tied_friction(cards: Sequence[Card], notes: list[str]) -> list[Card]:
-    """Cards without the friction of tied contact, which only gives its stick stiffness; ``notes`` gets that."""
+    """Cards without the friction of tied contact, which only gives its stick stiffness; ``notes`` gets that. What is glued
+    in some steps only may rub in others."""
     tied, interaction = set(), ""
+    changed = {(card.get("INTERACTION") or "").upper() for card in cards if card.key == "CHANGESURFACEBEHAVIOR"}
     for card in cards:
         if card.key == "SURFACEINTERACTION":
-            interaction = str(card.place)
-        elif card.key == "SURFACEBEHAVIOR" and key(card.get("PRESSURE-OVERCLOSURE") or "") == "TIED":
+            interaction = "" if (card.get("NAME") or "").upper() in changed else str(card.place)
+        elif interaction and card.key == "SURFACEBEHAVIOR" and key(card.get("PRESSURE-OVERCLOSURE") or "") == "TIED":
             tied.add(interaction)
     result: list[Card] = []
     for card in cards:

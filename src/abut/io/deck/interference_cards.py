@@ -113,6 +113,11 @@ def _number(line: Line, slave: str, master: str, pairs: Sequence[Pair]) -> int:
         raise line.unknown(f"'{slave}' and '{master}' are no *CONTACT PAIR")
     if pairs[found[0]].tied:
         raise line.error(f"'{slave}' and '{master}' are tied, and do neither overlap nor go; take the line out")
+    if pairs[found[0]].span is not None:
+        raise line.error(
+            f"'{slave}' and '{master}' are glued in some steps only (*CHANGE SURFACE BEHAVIOR), and neither overlap nor go "
+            "beside; take the line out, or make a deck for each state"
+        )
     if slave == master:
         raise line.error(f"'{slave}' touches itself, which has no interference; take the line out")
     return found[0]

@@ -151,8 +151,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Friction:
-    """value: coefficient, "rough" (never slips), or pairs of pressure and coefficient; changes: number of a step, and the
-    coefficient from its beginning on."""
+    """value: coefficient, "rough", or pairs of pressure and coefficient; changes: steps, and coefficients from there on."""
 
     value: float | str | tuple[tuple[float, float], ...] = 0.0
     changes: tuple[tuple[int, float], ...] = ()
@@ -164,9 +163,9 @@ NO_FRICTION = Friction()
 @dataclass(frozen=True)
 class Pair:
     """A contact pair or tie. overclosure: HARD, LINEAR, ...; adjust: a distance, "all" for every gap, node numbers, or None;
-    clearance: the gap given for all of the surface, None for the one of the mesh; is_tie: of *TIE, with its position
-    tolerance (None: the default, that of Abaqus where parameters are its); behaviour: of its
-    overclosure, where that has numbers; bilateral: NO SEPARATION; changing: its law is another one in later steps."""
+    clearance: given for all of the surface, None for that of the mesh; is_tie: of *TIE, with its position tolerance (None:
+    the default, that of Abaqus where parameters are its); behaviour: of its overclosure, where that has numbers; bilateral:
+    NO SEPARATION; changing: its law is another one later; span: first step and, if it ends, that before which it does."""
 
     name: str
     slave: str
@@ -183,6 +182,7 @@ class Pair:
     behaviour: Behaviour = ()
     bilateral: bool = False
     changing: bool = False
+    span: tuple[int, int | None] | None = None
 
 
 @dataclass(frozen=True)
