@@ -8,11 +8,15 @@ from dataclasses import replace
 import numpy as np
 
 from abut.errors import InputError
+from abut.model.conditions import weights
 from abut.nonlinear.attempt import Attempt
+from abut.nonlinear.settings import NOTHING
 from abut.problem.balance import Balance
 from abut.problem.holds import Holds
 from abut.problem.linearised import Linearised
+from abut.problem.preloads import LockedPreloads
 from abut.problem.problem import ContactProblem
+from abut.problem.released import Released
 from abut.solution import Saved, SavedPart
 from abut.solution.state import State
 
@@ -22,7 +26,8 @@ TAKEN = 1e-6  # of forces and pressures: what steps of another job may be off ba
 def saved_step(parts: Sequence[Attempt], linear: str, problem: ContactProblem) -> Saved:
     """Of the parts that a step of a problem was taken in. linear: the solver that was used, "direct" or "amg"."""
     last, iterations = parts[-1], tuple(row for part in parts for row in part.iterations)
-    moved = [None if problem.model.finite else problem.displacement(part.state) for part in parts]
+    histories, constraints = problem.model.histories, problem.constraints
+    moved = [constraints.linear(part.state.unknowns, weights(histories, part.state.time)) for part in parts]
     earlier = tuple(
         SavedPart(part.state, part.inside, len(part.iterations), here) for part, here in zip(parts[:-1], moved)
     )
@@ -65,9 +70,16 @@ def restored(saved: Saved, before: State, problem: ContactProblem) -> list[Attem
 
 
 def _held(problem: ContactProblem, before: State, state: State) -> tuple[Linearised, State]:
-    """The problem near a state that was reached in another job, where supports may have held what are holds here: these
-    have the forces of those, and remember them. Raises InputError where points are elsewhere."""
-    system = problem.again(before, state)
+    """The problem near a state that was reached in another job, where preloads may have been locked at other times, and
+    contacts have let go, and where supports may have held what are holds here: these have the forces of those, and remember
+    them. Raises InputError where points are elsewhere."""
+    system, history = problem.again(before, state), state.history
+    for term in problem.terms:
+        if isinstance(term, LockedPreloads):
+            history = history.with_term(term.name, system.shares[term.name].history)
+        elif isinstance(term, Released):
+            history = term.remembered(history, state, system)
+    state = replace(state, history=history)
     holds = next((term for term in problem.terms if isinstance(term, Holds)), None)
     if holds is None:
         return system, state
@@ -80,12 +92,14 @@ def _held(problem: ContactProblem, before: State, state: State) -> tuple[Lineari
 
 
 def require_equilibrium(system: Linearised, state: State, number: int) -> None:
-    """Raise InputError unless a state taken over is in balance under the loads, supports and contacts of the model; bodies
-    with small displacements."""
+    """Raise InputError unless a state taken over is in balance under the loads, supports and contacts of the model."""
     forces = np.abs(system.relative(system.unbalanced(state), state.largest.force)).max(initial=0.0)
     overlap, parts = 0.0, (system.gap(state), state.multipliers, state.closed)
     for pair, g, p, closed in zip(system.pairs, *(system.split(values) for values in parts)):
         rows = slice(None) if pair.tied else pair.normal
+        if pair.away:  # what does not act here has no pressure
+            overlap = max(overlap, float(np.abs(p).max(initial=0.0)) / max(state.largest.pressure, NOTHING))
+            continue
         wrong = np.where(closed[rows] | pair.two_way, np.abs(g[rows]), np.maximum(-g[rows], 0.0)) / pair.scale[rows]
         size = max(state.largest.pressure, float(np.abs(p[rows]).max(initial=0.0)))
         overlap = max(overlap, float(wrong.max(initial=0.0)) / size if size > 0.0 else 0.0)

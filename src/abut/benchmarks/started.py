@@ -1,5 +1,5 @@
 """Jobs that start from another one: a bar that has yielded is let go, by loads or by what held it; bars that press each
-other are drawn apart."""
+other are drawn apart; a bolt that was tightened is loaded."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from abut.analysis import solve
+from abut.benchmarks.preloads import FORCE, sleeve
 from abut.benchmarks.record import Benchmark, Reference
 from abut.errors import AbutError
 from abut.materials.elastic import LinearElastic
@@ -21,6 +22,7 @@ from abut.solution import Saved, Solution
 
 YOUNG, YIELD, HARDENING, PULL, LENGTH = 200e3, 200.0, 1e4, 300.0, 2.0
 SOFT, OVERLAP, DRAWN = 1000.0, 0.04, 0.03  # two bars in a row, each of the length above, without lateral contraction
+APART, TAKES = 6000.0, (11200.0, 5200.0)  # of a bolted sleeve: force; what then is in the bolt, and on the sleeve
 SHARE = 0.5  # of the second job's time, at which the first one's steps end
 STRETCH, RELEASED, PUSHED = (
     0.05,
@@ -79,14 +81,16 @@ def _drawn(level: int) -> Model:
 
 
 def _first(model: Model) -> Model:
-    """The job before: what the model does up to the share, over its whole time. What holds is a support there."""
+    """The job before: what the model does up to the share, over its whole time. What holds is a support there; bolts are not
+    locked yet."""
     supports = [Support(hold.on, x=hold.x, amplitude=RAMP) for hold in model.holds if hold.since == 0.0]
     return replace(
         model,
         holds=(),
-        loads=[replace(load, amplitude=RAMP) for load in model.loads],
+        loads=[replace(load, amplitude=RAMP) for load in model.loads if load.amplitude and load.amplitude(SHARE)],
+        preloads=[replace(preload, amplitude=RAMP, lock=None) for preload in model.preloads],
         supports=[*(_still(support) for support in model.supports), *supports],
-        contacts=[replace(contact, amplitude=RAMP) for contact in model.contacts],
+        contacts=[replace(contact, amplitude=RAMP if contact.amplitude else None) for contact in model.contacts],
         solve=SolveOptions(steps=2),
     )
 
@@ -132,6 +136,35 @@ def _pressures(solution: Solution) -> dict[str, float]:
     return {"pressed": at[SHARE], "drawn away": at[1.0]}
 
 
+def _bolts(solution: Solution) -> dict[str, float]:
+    at = {step.factor: step for step in solution.steps}
+    on_sleeve = next(contact for contact in at[1.0].contacts if contact.name == "sleeve")
+    return {
+        "tightened": at[SHARE].preloads["bolt"].tension,
+        "loaded": at[1.0].preloads["bolt"].tension,
+        "on the sleeve": abs(float(on_sleeve.force[1])),
+    }
+
+
+def _bolted(kinematics: str) -> Benchmark:
+    """Tightened in the first job, pulled apart in the second, where it is locked."""
+    far = kinematics == "finite"
+    near, why = (2e-3, "strains of 5e-4 beside 1") if far else (1e-5, LIKE_HOLDS)
+    springs = "bolt and sleeve, springs beside each other"
+    return Benchmark(
+        "start-bolt" + ("-finite" if far else ""),
+        "bolt in a sleeve, tightened in one job, locked and pulled apart in the next" + (", finite kinematics" * far),
+        lambda level: sleeve(kinematics, APART, cells=2**level),
+        _bolts,
+        {
+            "tightened": Reference(FORCE, 1e-6, "what is prescribed", UNIFORM),
+            "loaded": Reference(TAKES[0], near, springs, why),
+            "on the sleeve": Reference(TAKES[1], near, springs, why),
+        },
+        solve=_one_after_the_other,
+    )
+
+
 PLASTIC = (PULL - YIELD) / HARDENING
 DRAWN_TO = (STRETCH / LENGTH + YIELD / HARDENING) / (
     1.0 / YOUNG + 1.0 / HARDENING
@@ -168,4 +201,6 @@ BENCHMARKS = (
         },
         solve=_one_after_the_other,
     ),
+    _bolted("small"),
+    _bolted("finite"),
 )  # fmt: skip

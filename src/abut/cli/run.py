@@ -169,7 +169,7 @@ def solve_job(
     model = restart.description(job.model)
     fields = write_fields if team is None or size == 1 else Pieces(team)
     output = job.output.with_frd() if arguments.frd else job.output
-    begun = _begun(job, directory, size)
+    begun = _begun(job, directory)
     with Stream(directory, model, arguments.restart, fields, progress, output, begun) as stream:
         before = stream.resumed or begun
         if before:
@@ -208,14 +208,12 @@ def solve_job(
     return solution, directory
 
 
-def _begun(job: Job, directory: Path, processes: int) -> list[Saved]:
+def _begun(job: Job, directory: Path) -> list[Saved]:
     """The steps of another job that a job begins with; directory: where its own results go."""
     from abut.output.start import load_start
 
     if job.start is None:
         return []
-    if processes > 1:
-        raise InputError(f"{job.path}: start: steps of another job are taken over on one process only")
     if job.start.results.resolve() == directory.resolve():
         raise InputError(
             f"{job.path}: start.results: that is where this job writes; give output.directory another name"

@@ -394,5 +394,5 @@ class Model:
         for i, (contact, surfaces) in enumerate(zip(self.contacts, every)):
             if not self.finite or contact.kind == "tied":
                 check_own(surfaces, contact.contactor, contact.target, f"contacts[{i}]")
-        names, times = [contact.name for contact in self.contacts], [contact.times for contact in self.contacts]
-        check_twice(names, every, lambda i, j: times[i].meets(times[j]))
+        times = [contact.times for contact in self.contacts]
+        check_twice([contact.name for contact in self.contacts], every, lambda i, j: times[i].meets(times[j]))

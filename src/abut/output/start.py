@@ -13,18 +13,11 @@ from abut.output.restart import description, differences, listed, read_steps
 from abut.solution import Saved
 
 # what may differ: what acts, whose values the balance of every step taken over compares, and the ways of all over time
-MAY_CHANGE = re.compile(r"(loads|supports|holds|modes)\b|.*\bamplitude\b")
-REFUSED = (
-    "equations",
-    "rigid",
-    "rotations",
-    "couplings",
-    "preloads",
-    "removals",
-    "penetrations",
-    "connectors",
-    "physics",
+MAY_CHANGE = re.compile(
+    r"(loads|supports|holds|modes)\b|.*\bamplitudes?\b|(rigid|couplings)\[\d+\]\.r?[xyz]$|rotations\[\d+\]\.angle$"
+    r"|preloads\[\d+\]\.(force|shortening|lock)$|connectors\[\d+\]\.(motion|load)$|contacts\[\d+\]\.(since|until|released)$"
 )
+REFUSED = ("removals", "penetrations", "physics")
 
 
 def load_start(directory: Path, model: Model, share: float) -> list[Saved]:
@@ -35,8 +28,6 @@ def load_start(directory: Path, model: Model, share: float) -> list[Saved]:
     model has what cannot be taken over."""
     if not 0.0 < share < 1.0:
         raise InputError("start.time: expected a time after the start and before the end of this job")
-    if model.finite:
-        raise InputError('start: steps of another job can be taken over with model.kinematics = "small" only')
     for name in REFUSED:
         if getattr(model, name):
             raise InputError(
@@ -52,8 +43,8 @@ def load_start(directory: Path, model: Model, share: float) -> list[Saved]:
     own = _kept(description(model))
     for _, before in found:
         if changes := differences(_kept(before), own):
-            raise InputError(f"start.results: the steps in {directory} are of another model:{listed(changes)}\nonly loads, "
-                             "supports, holds and amplitudes may differ")  # fmt: skip
+            raise InputError(f"start.results: the steps in {directory} are of another model:{listed(changes)}\nonly what "
+                             "acts (loads, supports, motions, holds) and when may differ")  # fmt: skip
     scale = share / found[-1][0].state.time
     return [_sooner(saved, scale) for saved, _ in found]
 

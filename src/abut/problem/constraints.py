@@ -67,8 +67,12 @@ class Constraints:
 
     def displacement(self, free: NDArray[np.float64], factors: NDArray[np.float64]) -> NDArray[np.float64]:
         """Of all points, (dim n_points,), by the free displacements and the factors of the histories."""
-        linear = np.asarray(self.free @ free + self.prescribed @ factors)
+        linear = self.linear(free, factors)
         return linear if self.turns is None else linear + self.turns.displacement(free, factors)
+
+    def linear(self, free: NDArray[np.float64], factors: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The same without what finite turns add, so with small ones in their place."""
+        return np.asarray(self.free @ free + self.prescribed @ factors)
 
     def turn_of(self, nodes: NDArray[np.int64]) -> Turn | None:
         """The finite turn of points (n,), those of a rigid body or coupling; None without."""
@@ -96,7 +100,7 @@ class Constraints:
         moved = self.free.T @ vectors
         if self.orthonormal or not moved.size:
             return np.asarray(moved)
-        moves = slice(self.free.shape[1]) if self.others is None else np.diff(self.free.tocsc().indptr) > 0
+        moves = np.diff(self.free.tocsc().indptr) > 0  # unknowns of other fields move nothing
         free = self.free[:, moves]
         moved[moves] = spla.splu((free.T @ free).tocsc()).solve(moved[moves])
         return np.asarray(moved)

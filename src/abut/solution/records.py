@@ -219,7 +219,7 @@ class Saved:
     state: at its end; inside: (n,) where "dual-P1" has ordinary functions; linear: the linear solver, "direct" or "amg";
     iterations: for the log; parts: those before the last, of a step that was halved; taken: whether it is that of another
     job, whose balance is compared before the run goes on; displacement: (dim n_points,) of all points, which does not depend
-    on what supports leave free, with small displacements.
+    on what supports leave free; of rigid bodies that turn far that by their turns as small ones.
     """
 
     number: int
