@@ -12,11 +12,10 @@ from numpy.typing import NDArray
 from abut.analysis.beyond_sides import Beyond, Shown, facet_wise, sides_line
 from abut.analysis.certificate import NOTHING, Surroundings, certificate
 from abut.analysis.friction import friction_balance, friction_checks, friction_forces, friction_result
+from abut.analysis.loaded_area import LOADED, loaded_parts
 from abut.analysis.sides import sides_check
 from abut.analysis.statistics import (
-    LOADED,
     forces_on_bodies,
-    loaded_part,
     nodal_forces,
     nodal_parts,
     pressure_statistics,
@@ -120,13 +119,12 @@ class PairState:
             return friction_forces(self.pair, self.multipliers)
         return nodal_forces(self.pair.coupling, self.values, self.pair.contactor.dim)
 
-    @property
-    def area(self) -> float:
-        """Where contact is closed."""
-        pair = self.pair
-        if pair.tied:
-            return 0.0 if pair.away else float(pair.coupling.covered.sum())
-        return float(self.weight[self.closed].sum())
+    def loaded(self, at: Averages | None) -> NDArray[np.float64]:
+        """How much of each function's area is loaded, (n_functions,), see ``loaded_parts``; ties: where they press."""
+        if self.pair.tied:
+            return np.ones(len(self.pressure))
+        shown = self.normal if self.mended is None else self.mended
+        return loaded_parts(self.pair, at, self.pressure, self.closed, shown)
 
 
 EDGE = 0.05  # share of the force that functions with hardly any support may carry
@@ -149,7 +147,10 @@ def contact_result(
     shown = None if at is None else reported(state, at)
     nodal = raw if shown is None else shown.nodal
     share = np.where(np.isnan(raw), np.nan, 1.0) if at is None else at_facet_nodes(at.surface, at.share)
-    statistics, amount = _statistics(mesh, state, at, nodal, share, NOTHING * max(around.reference, around.beside))
+    loaded = state.loaded(at)
+    statistics, amount = _statistics(
+        mesh, state, at, nodal, share, loaded, NOTHING * max(around.reference, around.beside)
+    )
     before = None if earlier is None else earlier.friction
     carried = carry_to_target(pair.contactor, pair.target, coupling.target_part, nodal)
     average = None if shown is None else shown.average
@@ -161,7 +162,7 @@ def contact_result(
         target=_undeformed(mesh, pair.target),
         force=amount.force,
         max_pressure=statistics.largest,
-        area=state.area,
+        area=float((0.0 if pair.away else coupling.covered.sum()) if pair.tied else state.weight @ loaded),
         max_penetration=state.penetration,
         active=int(state.closed.sum()),
         multipliers=len(state.pressure),
@@ -187,7 +188,7 @@ def contact_result(
         friction=None
         if shown is None
         else friction_result(
-            pair, shown, state.multipliers, state.status, state.slips, state.limit, before, around.reference
+            pair, shown, state.multipliers, state.status, state.slips, state.limit, loaded, before, around.reference
         ),
     )
     return _on_second(result) if pair.contact.turned else result
@@ -266,16 +267,18 @@ def _statistics(
     at: Averages | None,
     nodal: NDArray[np.float64],
     share: NDArray[np.float64],
+    loaded: NDArray[np.float64],
     nothing: float,
 ) -> tuple[PressureStatistics, Resultant]:
-    """nodal, share: (n_facets, 9) reported pressure and covered share; nothing: pressure that is left after unloading."""
-    pair = state.pair
-    fields = state.normal, loaded_part(pair, state.pressure, state.closed, state.normal)
-    load, loaded = (nodal_parts(pair.coupling, at, field) for field in fields)
+    """nodal, share: (n_facets, 9) reported pressure and covered share; loaded: (n_functions,) how much of each function's
+    area is; nothing: pressure that is left after unloading."""
+    pair, normal = state.pair, state.normal
+    where = (normal > LOADED * normal.max(initial=0.0)).astype(float) if pair.tied else pair.space.plain @ loaded
+    load, area = (nodal_parts(pair.coupling, at, field) for field in (normal, np.asarray(where)))
     forces, _ = state.forces
     ids, none = pair.contactor.node_ids, bool(np.abs(state.values).max(initial=0.0) <= nothing)
     return (
-        pressure_statistics(state.contactor, nodal, load, loaded, share, nothing),
+        pressure_statistics(state.contactor, nodal, load, area, share, nothing),
         resultant(state.contactor.points[ids], forces[ids], mesh.axisymmetric, none),
     )
 

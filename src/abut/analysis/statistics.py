@@ -11,18 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut._core import shape_functions
+from abut.analysis.loaded_area import LOADED
 from abut.cells import CELLS, MAX_FACET_NODES
 from abut.contact.coupling import Coupling
 from abut.contact.geometry import by_kind, full_moments, node_coordinates, pressure_kind
 from abut.contact.nodal_recovery import Averages
 from abut.mesh.surface import Surface
-from abut.problem.pair import Pair
 from abut.solution import PressureStatistics, Resultant
 
 SUPPORTED = 0.5 - 1e-6  # covered share of a point's support from which on its pressure counts
-LOADED = (
-    1e-3  # multiplier over the largest above which it counts as loaded: the constraint function is never quite zero
-)
 SAME = 1e-9  # of the largest: pressures that differ by less are the same
 NONE = 1e-9  # shape function that is zero
 NO_RESULTANT = 1e-9  # resultant over the sum of the nodal forces' sizes, below which it has no line of action
@@ -40,20 +37,6 @@ def supported(surface: Surface, share: NDArray[np.float64]) -> NDArray[np.bool_]
         low = share[facets, : cell.corners] < SUPPORTED
         result[facets, : cell.nodes] = low @ functions.T < NONE
     return result
-
-
-def loaded_part(
-    pair: Pair, pressure: NDArray[np.float64], active: NDArray[np.bool_], normal: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """The loaded area as a field, 1 on it and 0 off it but for the shape functions between: facet-wise coefficients
-    (9 n_facets,). pressure: (n,) multipliers; normal: (9 n_facets,) their normal part, facet by facet.
-
-    Multipliers above a small share of the largest make it up, with their ordinary functions: the reported pressure, an
-    average, reaches up to a facet further."""
-    if pair.tied:
-        return (normal > LOADED * normal.max(initial=0.0)).astype(float)
-    loaded = active & (pressure > LOADED * pressure.max(initial=0.0))
-    return np.asarray(pair.space.plain @ loaded.astype(float))
 
 
 def nodal_parts(coupling: Coupling, at: Averages | None, field: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from abut.analysis.statistics import LOADED
+from abut.analysis.loaded_area import LOADED
 from abut.cells import CELLS
 from abut.contact.contactor_choice import FINER, Choice, choose
 from abut.contact.coupling import surface_degree

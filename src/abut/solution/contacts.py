@@ -68,7 +68,7 @@ class PressureStatistics:
 
     largest: of the reported pressure, force per area; place: (dim,) where, coordinates as those of Resultant;
     partly_covered: the largest at points with less of their support covered, which count nowhere else, NaN where none of
-    these is loaded; area: the loaded one, of multipliers in contact above a thousandth of the largest (2D: a length;
+    these is loaded; area: the loaded one, its edge found within facets, theory (P30) (2D: a length;
     axisymmetric: of the whole turn); mean: normal force over it; percentile_95: the pressure that 95 % of it stays below.
     Where nothing is in contact place, mean and percentile are NaN.
     """
@@ -170,7 +170,8 @@ class ContactResult:
     (n_contactor_facets, 9) covered share of each point's support. max_pressure: the largest where that is at least a half.
     covered: (n_contactor_facets,) bool, whether any part of the facet faces the target.
     target_pressure: (n_target_facets, 9), the pressure transferred, 0 where the target is not in contact.
-    covered_share: covered area over the contactor's area; checks: the certificate of this step.
+    area: the loaded one, its edge found within facets, theory (P30); of a tie the covered one. covered_share: covered
+    area over the contactor's area; checks: the certificate of this step.
     statistics: of the pressure over the loaded area; resultant: force and moment on the side named first, and their centre.
     contactor_forces, target_forces: (n_nodes, dim) of the multiplier, at ``contactor.node_ids`` and ``target.node_ids``;
     body_forces: body of the side named second -> (dim,) its part of their resultant; friction: where there is any.
