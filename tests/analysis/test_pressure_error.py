@@ -113,10 +113,12 @@ def test_it_is_quiet_where_the_pressure_is_even(cell: str) -> None:
 @pytest.mark.parametrize("around", [(8, 20), (16, 24), (24, 24), (24, 16)])
 def test_straight_cells_of_rings_do_not_raise_it(around: tuple[int, int]) -> None:
     """What interpolation misses of bent displacements puts stresses of tri3 off by 8 to 25 % of the even pressure, which
-    does not have it: 3 % where facets are 16 a quarter or more, twice that where they are 8; what is said does not warn."""
+    does not have it: 3 % where facets are 16 a quarter or more, twice that where they are 8, most of it in the mean; what is
+    said is no more than twice that."""
     solution = abut.solve(fit(around, "tri3", plane="strain"))
-    assert np.abs(solution.contacts[0].nodal_pressure / PLANE_FIT - 1.0).max() < (0.06 if min(around) == 8 else 0.03)
-    assert checked(solution).verdict == "pass"
+    error = np.abs(solution.contacts[0].nodal_pressure / PLANE_FIT - 1.0).max()
+    assert error < (0.06 if min(around) == 8 else 0.03)
+    assert checked(solution).value < 2.0 * error
 
 
 def test_near_a_sharp_corner_it_warns() -> None:

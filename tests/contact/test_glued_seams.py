@@ -10,6 +10,7 @@ import pytest
 import abut
 from abut.contact.glued_seams import one_place
 from abut.mesh import make
+from models.seams import hubs, lame
 
 STEEL = abut.LinearElastic(210e3, 0.3)
 Fields = tuple[np.ndarray, np.ndarray, abut.Solution]
@@ -113,24 +114,9 @@ def test_seams_on_a_curve() -> None:
     """Two hubs of hex8 glued end to end, 16 and 24 cells round, on a shaft ten times as stiff: Lame's pressure. Points of
     one side lie off the edges of the other by the sagitta of these, a twentieth of their length, and the tie's faces do not
     meet either (6 % there; 0 to 2.3 times the pressure where each side has its own)."""
-    outer, bore, inner, over, young = 20.0, 10.0, 4.0, 0.02, (21e3, 210e3)
-    mesh = make.join({
-        "lower": make.cylinder(outer, (0, 15), (4, 16, 4), "hex8", inner=bore),
-        "upper": make.cylinder(outer, (15, 30), (4, 24, 5), "hex8", inner=bore),
-        "shaft": make.cylinder(bore + over, (0, 30), (4, 20, 9), "hex8", inner=inner),
-    })  # fmt: skip
-    metals = [abut.LinearElastic(young[body == "shaft"], 0.3) for body in mesh.bodies]
-    contacts = [
-        abut.Contact(["lower.inner", "upper.inner"], "shaft.round"),
-        abut.Contact("lower.top", "upper.bottom", kind="tied"),
-    ]
-    solids = [abut.Solid(body, metal) for body, metal in zip(mesh.bodies, metals)]
-    pressure = abut.solve(abut.Model(mesh, solids, contacts=contacts)).contacts[0].nodal_pressure
-    hub = (outer**2 + bore**2) / (outer**2 - bore**2) + 0.3
-    shaft = (bore**2 + inner**2) / (bore**2 - inner**2) - 0.3
-    lame = over / bore / (hub / young[0] + shaft / young[1])
-    assert np.abs(pressure / lame - 1.0).max() < 0.07
-    assert pressure.mean() == pytest.approx(lame, rel=0.02)
+    pressure = abut.solve(hubs((16, 24))).contacts[0].nodal_pressure
+    assert np.abs(pressure / lame() - 1.0).max() < 0.07
+    assert pressure.mean() == pytest.approx(lame(), rel=0.02)
 
 
 def test_contacts_of_their_own_beside_a_seam() -> None:

@@ -72,15 +72,19 @@ class Graph:
         return np.asarray(self.matrix @ flags.astype(float) > 0.0)
 
     @staticmethod
-    def of_nodes(surface: Surface) -> Graph:
-        """Corner points along facet edges; the rim belongs to one facet only."""
+    def of_nodes(surface: Surface, seams: NDArray[np.int64] | None = None) -> Graph:
+        """Corner points along facet edges; the rim belongs to one facet only. seams: as of the pressure space: what
+        neighbours a point that follows neighbours those that it follows in its place, and seams are no rim."""
         n = len(surface.points)
         ends = []
         for kind, facets in by_kind(surface):
             corners, nodes = CELLS[kind].corners, surface.nodes[facets].astype(np.int64)
             pairs = [(0, 1)] if CELLS[kind].dim == 1 else [(i, (i + 1) % corners) for i in range(corners)]
             ends += [np.sort(nodes[:, list(ends_of_edge)], axis=1) for ends_of_edge in pairs]
-        edges, count = np.unique(np.concatenate(ends), axis=0, return_counts=True)
+        joined = np.concatenate(ends)
+        if seams is not None:
+            joined = _over_seams(joined, seams, n)
+        edges, count = np.unique(joined, axis=0, return_counts=True)
         rim = np.zeros(n, dtype=bool)
         if surface.dim == 2:
             rim[np.bincount(edges.ravel(), minlength=n) == 1] = True
@@ -97,6 +101,19 @@ class Graph:
         common = sp.triu(has @ has.T, 1).tocoo()
         edges = np.stack([common.row, common.col], axis=1)[common.data >= surface.dim - 1]
         return Graph(edges.astype(np.int64), len(surface), np.zeros(len(surface), dtype=bool))
+
+
+def _over_seams(edges: NDArray[np.int64], seams: NDArray[np.int64], n: int) -> NDArray[np.int64]:
+    """Edges (m, 2) of all facets, one at a seam as often as within a side; of ``n`` points."""
+    follows, leads = np.zeros((2, n), dtype=bool)
+    follows[seams[:, 0]], leads[seams[:, 1]] = True, True
+    number = follows[edges].sum(axis=1)
+    own, across = edges[number == 0], edges[number == 1]
+    swapped = follows[across[:, 1]]
+    across[swapped] = across[swapped, ::-1]
+    leaders = sp.csr_matrix((np.ones(len(seams)), seams.T), shape=(n, n))[across[:, 0]].tocoo()
+    instead = np.sort(np.stack([leaders.col, across[leaders.row, 1]], axis=1), axis=1)
+    return np.concatenate([own, own[leads[own].all(axis=1)], instead])
 
 
 def excluded(graph: Graph, share: NDArray[np.float64]) -> NDArray[np.bool_]:

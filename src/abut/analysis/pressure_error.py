@@ -31,7 +31,7 @@ def pressure_error(
     ``normal_stress``; carried: pressure that those at edges of bodies, which may have no limit, are taken for at most;
     theory (P17)."""
     surface, normals = side_normals(pair.contactor)
-    graph = Graph.of_nodes(surface)
+    graph = Graph.of_nodes(surface, pair.space.seams)
     average = pressure if average is None else average
     closed = (graph.degree > 0) & (average > CLOSED * largest)
     partly = (share > 0.0) & (np.abs(share - 1.0) > WHOLE)
@@ -63,7 +63,7 @@ def hollow(pair: Pair, pressure: Array, largest: float) -> float:
 
     pressure: (n_points,) at the corners, of the contactor split at its creases."""
     surface, normals = side_normals(pair.contactor)
-    graph = Graph.of_nodes(surface)
+    graph = Graph.of_nodes(surface, pair.space.seams)
     count, along = _planes(pair, len(graph.rim))
     _, mirrored = _mirrored(pair, graph)
     free = graph.rim & ~mirrored  # the body's own edge, whose pressure may have no limit, to where it meets a plane

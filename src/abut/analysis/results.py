@@ -17,6 +17,7 @@ from abut.analysis.faceting import free_axes
 from abut.analysis.flow import flow, remembered
 from abut.analysis.interpolation_error import Mended
 from abut.analysis.known_stress import known_stress
+from abut.analysis.mean_error import with_mean
 from abut.analysis.moved import slid, turned
 from abut.analysis.node_fields import node_fields
 from abut.analysis.overlap import covered_elsewhere, overlaps
@@ -130,6 +131,7 @@ def step_result(
     values = recovered(solids, points, own, known, None if shown is None else shown.fits, change)
     acting, work = _energy(end, attempt, acted, contacts, before)
     strained = beyond_rounding(end.internal, balance, end.displacement)
+    wrong = stress_error(solids, end.nodal, own, values, contacts) if strained else None
     pushes = [float(np.abs(pair.rows.T @ p).sum()) / 2.0 for pair, p in zip(balance.pairs, end.pressures)]
     step = Step(
         number=attempt.number,
@@ -143,7 +145,7 @@ def step_result(
         reaction=(end.reaction + end.sprung).reshape(-1, model.dim).sum(axis=0),
         **vars(reactions(model, constraints.bodies, by_supports, end.nodal)),
         load=assembled.loaded.resultant @ balance.factors + end.following.reshape(-1, model.dim).sum(axis=0),
-        contacts=contacts,
+        contacts=with_mean(contacts, model, wrong),
         axisymmetric=model.mesh.axisymmetric,
         cycling=_cycling(balance, end.cycling),
         flips=_flips(balance, attempt),
@@ -160,7 +162,7 @@ def step_result(
         landed=_landed(state),
         turn=turned(model, end.nodal),
         energy=work if strained else None,
-        stress_error=stress_error(solids, end.nodal, own, values, contacts) if strained else None,
+        stress_error=wrong,
         volume_change=volume_change(solids, end.nodal, own, change) if shown is None and strained else None,
         remembered={**remembered(solids, end.motion.history, before), **node_fields(problem, end.motion, state)},
         penetrations=penetration_results(problem, state, end.displacement),

@@ -6,6 +6,7 @@ A point of a seam has one displacement, but a function on either side of it: two
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -35,7 +36,11 @@ def along_seams(space: PressureSpace, contactor: Surface, coupling: Coupling, gl
         mine, theirs = (np.isin(space.node, points) for points in (dependent, master))
         if (mine & ~theirs).any() and (theirs & ~mine).any():
             follow = _followed(space, contactor, mine & ~theirs, theirs & ~mine, follow)
-    return space if follow is None else following(space, coupling, follow)
+    if follow is None:
+        return space
+    pairs = follow.tocoo()
+    one, other = space.side[np.stack([pairs.row, pairs.col])[:, pairs.row != pairs.col]]
+    return replace(following(space, coupling, follow), seams=np.stack([one, other], axis=1))
 
 
 def one_place(points: Array, glue: Sequence[Glue]) -> NDArray[np.int64]:

@@ -44,6 +44,8 @@ class PressureSpace:
               for each smooth side.
     removed:  how many multipliers were removed or made to follow a neighbour.
     merges:   multipliers that go make a neighbour follow; else they vanish.
+    seams:    (m, 2) points of the contactor split at its creases: one at a seam of glued bodies that follows, theory (P29),
+              and one that it follows; None for none.
     """
 
     name: str
@@ -55,6 +57,7 @@ class PressureSpace:
     side: NDArray[np.int64]
     removed: int = 0
     merges: bool = True
+    seams: NDArray[np.int64] | None = None
 
     def __len__(self) -> int:
         return int(self.transfer.shape[1])
