@@ -21,7 +21,8 @@ class Reference(Kinematics):
     """Of a contact or a tie. pair: as from ``contact_pairs.pairs``."""
 
     def frame(self, known: ContactHistory, before: Placed, near: Placed | None) -> PairFrame:
-        """As in ``Kinematics``: tangential jumps in ``before``, and what is open moved on until it closes, theory (R3)."""
+        """What is fixed of the pair during a step, as in ``Kinematics``: tangential jumps in ``before``, and what is
+        open moved on until it closes, theory (R3)."""
         if not self.pair.frictional:
             return PairFrame()
         gap = self._gap(before)
@@ -29,18 +30,18 @@ class Reference(Kinematics):
         return PairFrame(slipped=gap[self.pair.tangential] + came, approached=came)
 
     def ended(self, was: ContactHistory, known: ContactHistory, before: Placed) -> PairFrame:
-        """As in ``Kinematics``."""
+        """The frame of a step that has ended, as in ``Kinematics``."""
         return self.frame(was, before, None)
 
     def at(self, frame: PairFrame, now: Placed, before: Array) -> ContactNow:
-        """As in ``Kinematics``, theory (F9)."""
+        """Gaps, slips and forces at a state, as in ``Kinematics``, theory (F9)."""
         gap = self._gap(now)
         if frame.slipped is not None:
             gap[self.pair.tangential] -= frame.slipped
         return ContactNow(self.pair, gap, self.pair.rows, None, np.zeros(len(self.pair.space), dtype=bool))
 
     def touching(self, rest: Placed, frame: PairFrame) -> NDArray[np.bool_]:
-        """As in ``Kinematics``."""
+        """What is closed at the outset, as in ``Kinematics``."""
         pair = self.pair
         near = self._gap(rest) <= TOUCHING * pair.size * pair.weight
         return pair.of_functions(near[pair.normal]) if pair.frictional else pair.two_way | near
