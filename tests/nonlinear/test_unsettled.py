@@ -17,6 +17,8 @@ from models.clamps import NAMED, WHOLE, clamp
 from models.corners import peg, pin_in_cradle
 from models.sliding import finite
 
+FOLDED = DEFAULT.steps.folded
+
 
 def test_iterations_that_come_back() -> None:
     """After two or three, all around once; falling or with nothing of the kind they go on."""
@@ -99,8 +101,8 @@ def test_cells_that_fold(integration: str, share: float, told: bool) -> None:
     bent[:, 0] = share * (2.0 * points[:, 0] - 1.0) * (2.0 * points[:, 1] - 1.0)
     state = replace(problem.start(), time=1.0, unknowns=problem.constraints.free.T @ bent.ravel())
     assert np.allclose(problem.displacement(state), bent.ravel())
-    line = hourglassing(problem, state)
+    line = hourglassing(problem, state, FOLDED)
     assert (line != "") == told
     assert not told or f"volume is {1.0 - 2.0 * share / np.sqrt(3.0):.2g} of" in line
-    assert (folds_at_once(problem, problem.start(), state) != "") == told
-    assert folds_at_once(problem, state, state) == ""
+    assert (folds_at_once(problem, problem.start(), state, FOLDED) != "") == told
+    assert folds_at_once(problem, state, state, FOLDED) == ""

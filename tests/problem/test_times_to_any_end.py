@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import fields, replace
 from typing import Any
@@ -132,3 +133,26 @@ def test_loads_of_a_transient_have_the_time_of_that() -> None:
     late = abut.Force("bar.top", (0, 0, 1.0), amplitude=abut.Amplitude(((0.0, 0.0), (2.0, 1.0))))
     with pytest.raises(abut.InputError, match="shares of the period"):
         abut.Transient(4.0, [late])
+
+
+def flung(end: float) -> abut.Model:
+    """A metal bar pulled beyond its limit load, which no load step reaches."""
+    metal = abut.Plastic(YOUNG, 0.3, 1.0)
+    return abut.Model(
+        MESH, solids=[abut.Solid("bar", metal)], supports=[BELOW],
+        loads=[abut.Force("bar.top", (0.0, 0.0, 4.0))], solve=abut.SolveOptions(steps=4, end=end),
+    )  # fmt: skip
+
+
+def test_messages_say_times() -> None:
+    """What a run of one model says, to an end of 1 and to another, is the same but for its times, which are so many times
+    later."""
+    short, long = abut.solve(flung(1.0)), abut.solve(flung(END))
+    assert [step.time for step in long.steps] == pytest.approx([END * step.factor for step in short.steps])
+    assert f"at time {long.steps[0].time:.6g}:" in repr(long.steps[0])
+    said = [
+        [float(at) for at in re.findall(r"(?:time|near|to) ([0-9.]+)", " ".join(each.notes))] for each in (short, long)
+    ]
+    assert len(said[0]) > 8
+    assert max(said[0]) <= 1.0
+    assert said[1] == pytest.approx([END * time for time in said[0]], rel=1e-4)

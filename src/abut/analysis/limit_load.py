@@ -41,7 +41,8 @@ def limit_load(assembled: Assembled, steps: Sequence[Step], failed: Attempt) -> 
     if now is None or not now.largest > GROWN * (0.0 if before is None else before.largest):
         return None
     where = (
-        f"{_place(time, forces, now)}, and no load step from there to {failed.time:.5g} or beyond finds an equilibrium"
+        f"{_place(model.solve.time(time), forces, now)}, and no load step from there to "
+        f"{model.solve.time(failed.time):.5g} or beyond finds an equilibrium"
     )
     return LimitLoad(1.0 - time / model.ends[-1], where)
 
@@ -59,8 +60,9 @@ def near_limit(assembled: Assembled, steps: Sequence[Step], times: Sequence[floa
     if shortest > SHRUNK * (times[-1] - begun):
         return None
     forces = np.asarray(assembled.loaded.forces @ weights(model.histories, times[-1])).reshape(model.mesh.points.shape)
-    so_far = f"{now.largest:.3g} after {before.largest:.3g} at time {begun:.5g}, in steps down to {shortest:.2g}"
-    return LimitLoad(0.0, f"{_place(times[-1], forces, now)}, {so_far}")
+    parts = f"in steps down to {model.solve.time(shortest):.2g}"
+    so_far = f"{now.largest:.3g} after {before.largest:.3g} at time {steps[-2].time:.5g}, {parts}"
+    return LimitLoad(0.0, f"{_place(model.solve.time(times[-1]), forces, now)}, {so_far}")
 
 
 def _place(time: float, forces: NDArray[np.float64], now: Flow) -> str:

@@ -136,6 +136,7 @@ def step_result(
     step = Step(
         number=attempt.number,
         factor=state.time,
+        run_end=model.solve.end,
         converged=attempt.converged,
         reason=attempt.reason,
         iterations=attempt.iterations,

@@ -31,7 +31,7 @@ from abut.nonlinear.march import Control, Stepper, march
 from abut.nonlinear.one_step import stride
 from abut.nonlinear.pace import Pace, Slips, given_pace, pace_of
 from abut.nonlinear.settings import DEFAULT, Settings
-from abut.nonlinear.stepping import ABSURD, SmallSteps, prepared
+from abut.nonlinear.stepping import SmallSteps, prepared
 from abut.probing import Place, find_places, read
 from abut.problem.assembly import Assembled, assemble, prescribed
 from abut.problem.clock import Clock
@@ -146,7 +146,7 @@ class Run:
             self.deadline.begins()
             if self.model.finite:  # bodies have moved: whether contact holds them there, the solver finds
                 behind = self.steps[-1].factor if self.steps else 0.0
-                observe(Phase(f"step {number}, to time {time:.4g}", share=behind))
+                observe(Phase(f"step {number}, to time {solve.time(time):.4g}", share=behind))
                 return
             of_all = max(count, number)
             observe(Phase(f"step {number} of {of_all}", None, number - 1, of_all))
@@ -164,13 +164,13 @@ class Run:
         def halves(attempt: Attempt, time: float) -> None:
             self.told.note(
                 f"step {attempt.number} did not converge in {len(attempt.iterations)} iterations{_why(attempt)}: it goes to "
-                f"time {time:.6g} first, not to {attempt.time:.6g}"
+                f"time {solve.time(time):.6g} first, not to {solve.time(attempt.time):.6g}"
             )
 
         def refines(attempt: Attempt, time: float) -> None:
             self.told.note(
-                f"step {attempt.number} to time {attempt.time:.6g} jumps over the onset of slip: it goes to time {time:.6g} "
-                "first"
+                f"step {attempt.number} to time {solve.time(attempt.time):.6g} jumps over the onset of slip: it goes to "
+                f"time {solve.time(time):.6g} first"
             )
 
         control = Control(
@@ -248,7 +248,7 @@ class Run:
         before = [*self.steps, *(step for _, step in self.parts)]
         step, self.acted = step_result(self.assembled, attempt, before, self.acted, self._mended(attempt))
         if sized:
-            _check_size(self.model, step.displacement, self.told.note)
+            _check_size(self.model, step.displacement, self.told.note, self.settings.holding.absurd)
         if attempt.converged:
             began = self.assembled.problem.start() if self.ended is None else self.ended[1].state
             self.ended = began, replace(attempt, balance=None)
@@ -310,19 +310,19 @@ class Run:
         """Keep the step that the parts so far make, and tell of it."""
         attempts = [attempt for attempt, _ in self.parts]
         self.steps.append(self._taken())
-        taken = self.steps[-1].energy
+        taken, end = self.steps[-1].energy, self.steps[-1].time
         if is_dragged(attempts[-1].state) and taken is not None:
             self.told.note(
-                f"step {attempts[-1].number} was led to time {attempts[-1].time:.6g} by a drag on all motion, in "
+                f"step {attempts[-1].number} was led to time {end:.6g} by a drag on all motion, in "
                 f"{len(attempts)} parts: it took {taken.stabilisation:.3g} of energy, and is gone at the end"
             )
         elif len(attempts) > 1:
-            times = ", ".join(f"{attempt.time:.6g}" for attempt in attempts)
+            times = ", ".join(f"{self.model.solve.time(attempt.time):.6g}" for attempt in attempts)
             self.told.note(f"step {attempts[-1].number} was taken in {len(attempts)} parts, to times {times}")
             self._tell_of_limit(attempts)
         if taken is not None and taken.jumped > JUMPED:
             self.told.note(
-                f"step {attempts[-1].number} to time {attempts[-1].time:.6g} jumps to another equilibrium: no way of stable "
+                f"step {attempts[-1].number} to time {end:.6g} jumps to another equilibrium: no way of stable "
                 f"states from its beginning explains {taken.unexplained:.3g} of energy, {taken.jumped:.0%} of its work; "
                 "give more steps, or prescribe a displacement instead of the force"
             )
@@ -353,13 +353,13 @@ def _why(attempt: Attempt) -> str:
     return f" ({attempt.reason})" if attempt.reason else ""
 
 
-def _check_size(model: Model, displacement: NDArray[np.float64], note: Callable[[str], None]) -> None:
+def _check_size(model: Model, displacement: NDArray[np.float64], note: Callable[[str], None], most: float) -> None:
     """Displacements beyond the size of the model mean wrong units, or a matrix that is singular in all but name."""
     extent = float(np.ptp(model.mesh.points, axis=0).max())
     largest = float(np.abs(displacement).max(initial=0.0))
-    if not largest < ABSURD * extent:
+    if not largest < most * extent:
         raise SingularModelError(
-            f"displacements of {largest:.2g} exceed {ABSURD:g} times the model size {extent:.2g}: check the "
+            f"displacements of {largest:.2g} exceed {most:g} times the model size {extent:.2g}: check the "
             "units of Young's moduli, loads and mesh, and that supports constrain every body"
         )
     if largest > extent and not model.finite:

@@ -62,7 +62,7 @@ def restored(saved: Saved, before: State, problem: ContactProblem) -> list[Attem
         own = problem.with_ordinary(part.inside) if part.inside.any() else problem
         system, state = _held(own, before, part.state) if saved.taken else (own.again(before, part.state), part.state)
         if saved.taken:
-            require_equilibrium(system, state, saved.number)
+            require_equilibrium(system, state, saved.number, problem.model.solve.time(state.time))
         balance = Balance.of(system, state)
         attempts.append(Attempt(saved.number, state, True, row, none, part.inside, state.time, balance=balance))
         before = state
@@ -87,12 +87,14 @@ def _held(problem: ContactProblem, before: State, state: State) -> tuple[Lineari
     terms = [given if term is holds else term for term in problem.terms]
     system = replace(problem, terms=terms).again(before, state)
     displacement, share = problem.displacement(state), system.shares[holds.name]
-    holds.require_places(displacement, share, state.time, TAKEN * float(np.abs(displacement).max(initial=0.0)))
+    off, end = TAKEN * float(np.abs(displacement).max(initial=0.0)), problem.model.solve.end
+    holds.require_places(displacement, share, state.time, off, end)
     return system, replace(state, history=state.history.with_term(holds.name, share.history))
 
 
-def require_equilibrium(system: Linearised, state: State, number: int) -> None:
-    """Raise InputError unless a state taken over is in balance under the loads, supports and contacts of the model."""
+def require_equilibrium(system: Linearised, state: State, number: int, time: float) -> None:
+    """Raise InputError unless a state taken over, at a ``time`` of the run, is in balance under the loads, supports and
+    contacts of the model."""
     forces = np.abs(system.relative(system.unbalanced(state), state.largest.force)).max(initial=0.0)
     overlap, parts = 0.0, (system.gap(state), state.multipliers, state.closed)
     for pair, g, p, closed in zip(system.pairs, *(system.split(values) for values in parts)):
@@ -105,7 +107,7 @@ def require_equilibrium(system: Linearised, state: State, number: int) -> None:
         overlap = max(overlap, float(wrong.max(initial=0.0)) / size if size > 0.0 else 0.0)
     if max(float(forces), overlap) > TAKEN:
         raise InputError(
-            f"start: step {number} of the job before is not in balance at time {state.time:.6g} of this one (to "
+            f"start: step {number} of the job before is not in balance at time {time:.6g} of this one (to "
             f"{max(float(forces), overlap):.2g}); loads, supports and contacts must be there what they were then: give "
             "them amplitudes that pass through these values, and let a support go by a hold that acts until this time"
         )

@@ -61,7 +61,7 @@ class Complementarity:
     stiffness: float
 
     def evaluate(self, jump: Array, traction: Array, state: LawState) -> LawResult:
-        """As in ``Law``, c = 1."""
+        """Residual, derivatives and status at n points, as in ``Law``, c = 1."""
         on = state.closed[:, None]
         return LawResult(
             residual=np.where(on, -jump, -traction / self.stiffness),
@@ -76,7 +76,7 @@ class Tied:
     """jump = 0 in all components, theory (L9)."""
 
     def evaluate(self, jump: Array, traction: Array, state: LawState) -> LawResult:
-        """As in ``Law``, any c."""
+        """Residual, derivatives and status at n points, as in ``Law``, any c."""
         n, c = jump.shape
         return LawResult(
             residual=-jump,
@@ -116,7 +116,7 @@ class Coulomb:
     friction: float | FrictionBound
 
     def evaluate(self, jump: Array, traction: Array, state: LawState) -> LawResult:
-        """As in ``Law``, c = 2 or 3."""
+        """Residual, derivatives and status at n points, as in ``Law``, c = 2 or 3."""
         n, c = jump.shape
         soft = 1.0 / self.stiffness
         closed, slips = state.closed, np.zeros(n, dtype=bool) if state.slipping is None else state.slipping
@@ -175,7 +175,7 @@ class ConstraintFunction:
     tension: float = TENSION_START
 
     def evaluate(self, jump: Array, traction: Array, state: LawState) -> LawResult:
-        """As in ``Law``, c = 1."""
+        """Residual, derivatives and status at n points, as in ``Law``, c = 1."""
         scaled, pressure = self.stiffness * jump[:, 0], traction[:, 0]
         value, by_gap, by_pressure = constraint_function(scaled, pressure, self.epsilon * self.reference**2)
         width = self.tension * self.reference

@@ -58,8 +58,9 @@ class PressureOverclosure:
         return float(lengths[i - 1] + (pressure - pressures[i - 1]) / slope)
 
     def evaluate(self, jump: NDArray[np.float64], traction: NDArray[np.float64], state: LawState) -> LawResult:
-        """As in ``abut.contact.laws.Law``, c = 1. A point is in contact where overclosure and pressure together say so:
-        bodies that contact alone holds keep it while pressures are right and gaps are not yet."""
+        """Residual, derivatives and status at n points, as in ``abut.contact.laws.Law``, c = 1. A point is in contact
+        where overclosure and pressure together say so: bodies that contact alone holds keep it while pressures are right
+        and gaps are not yet."""
         lengths, pressures = np.array(self.points).T
         slopes = np.diff(pressures) / np.diff(lengths)
         over = -jump[:, 0]

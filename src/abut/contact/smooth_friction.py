@@ -56,7 +56,7 @@ class SmoothCoulomb:
     reference: float
 
     def evaluate(self, jump: Array, traction: Array, state: LawState) -> LawResult:
-        """As in ``Law``, c = 2 or 3."""
+        """Residual, derivatives and status at n points, as in ``Law``, c = 2 or 3."""
         soft, scaled, pressure = 1.0 / self.stiffness, self.stiffness * jump[:, 0], traction[:, 0]
         value, by_gap, by_pressure = constraint_function(scaled, pressure, (self.epsilon * self.reference) ** 2)
         drag, by_slip, by_drag, by_push = self._friction(jump[:, 1:], traction[:, 1:], pressure)

@@ -160,7 +160,7 @@ def _by_sliding(solution: Solution) -> Iterator[Remedy]:
         yield Remedy(
             action,
             f"friction reaches its limit, and what it alone holds slides: {', '.join(some)}, at time "
-            f"{steps[-1].factor:.4g}",
+            f"{steps[-1].time:.4g}",
         )
 
 

@@ -74,11 +74,11 @@ class Direct:
         return f"direct ({solver_name()})"
 
     def condensed(self, problem: Problem) -> Problem:
-        """As in ``LinearSolver``."""
+        """The problem with displacements eliminated, where that is of use, as in ``LinearSolver``."""
         return (condense(problem) if isinstance(problem, ContactProblem) else None) or problem
 
     def prepare(self, system: Linearised, previous: Prepared | None) -> Prepared:
-        """As in ``LinearSolver``."""
+        """Set up for a linearised problem, as in ``LinearSolver``."""
         if isinstance(previous, Dense | SaddlePoint) and previous.system.same_matrices(system):
             return replace(previous, system=system)
         if system.compliance is not None:
@@ -88,7 +88,7 @@ class Direct:
         return SaddlePoint(system, foresight(lambda: half_spaces(interfaces(pairs)), moved), repeated=self.repeated)
 
     def note(self, prepared: Prepared) -> str:
-        """As in ``LinearSolver``."""
+        """What is told of it, as in ``LinearSolver``."""
         if prepared.system.compliance is None:
             return f"direct solver {solver_name()}"
         kept = len(prepared.system.load)
@@ -96,7 +96,7 @@ class Direct:
 
     @property
     def effort(self) -> str:
-        """As in ``LinearSolver``."""
+        """What is told of its work, as in ``LinearSolver``."""
         done = self.repeated
         if not done.factorisations:
             return ""

@@ -38,28 +38,28 @@ class Dense:
     accurate: float = ACCURATE
 
     def solve(self, rows: Rows, residual: Vector, pressure: Vector, accuracy: float) -> tuple[Vector, Vector]:
-        """As in ``Prepared``."""
+        """One Newton system solved, as in ``Prepared``."""
         return self.flexibility.step(rows, residual, pressure, float(np.abs(self.system.forces).sum()))
 
     def transposed(self, rows: Rows, force: Vector, gap: Vector, accuracy: float) -> tuple[Vector, Vector]:
-        """As in ``Transposable``, in the unknowns of the condensed problem."""
+        """The transposed system solved, as in ``Transposable``, in the unknowns of the condensed problem."""
         part, n = coupled(self.system, rows), len(force)
         rhs = np.concatenate([force, gap[part.chosen]])
         x = solve_dense(dense_matrix(self.system, part), rhs, self.flexibility.redundant)
         return x[:n], part.complete(self.system, rows, x[:n], x[n:], gap)
 
     def factorise(self, rows: Rows) -> Solve:
-        """As in ``Prepared``."""
+        """Factors of the rows, for several right-hand sides, as in ``Prepared``."""
         return self.flexibility.factorise(rows, float(np.abs(self.system.forces).sum()))
 
     def respond(self, force: Vector, springs: Vector) -> Vector:
-        """As in ``Prepared``."""
+        """Displacements by forces, without contact, as in ``Prepared``."""
         return np.asarray(np.linalg.solve(self.system.stiffness + np.diag(springs), force)) if len(force) else force
 
     def foresee(
         self, gap: Vector, pressure: Vector, active: NDArray[np.bool_], tied: NDArray[np.bool_]
     ) -> NDArray[np.bool_]:
-        """As in ``Prepared``."""
+        """The next active set, predicted, as in ``Prepared``."""
         return self.predict(gap, pressure, active, tied)
 
 

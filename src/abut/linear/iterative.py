@@ -46,7 +46,7 @@ class Iterative:
     accurate: float = ACCURATE
 
     def solve(self, rows: Rows, residual: Vector, pressure: Vector, accuracy: float) -> tuple[Vector, Vector]:
-        """As in ``Prepared``, preconditioned by theory (V11)."""
+        """One Newton system solved, as in ``Prepared``, preconditioned by theory (V11)."""
         system = self.system
         interface = conditions(rows, system.operator, self.pressures, system.pairs, system.columns)
         operator, n = interface.forces, len(residual)
@@ -75,7 +75,7 @@ class Iterative:
         return solution[:n], interface.multipliers(interface.columns * solution[n:])
 
     def transposed(self, rows: Rows, force: Vector, gap: Vector, accuracy: float) -> tuple[Vector, Vector]:
-        """As in ``Transposable``."""
+        """The transposed system solved, as in ``Transposable``."""
         motions = self.loose.motions
 
         def correction(part: Coupled, inverse: Apply) -> Apply:
@@ -103,11 +103,11 @@ class Iterative:
     def foresee(
         self, gap: Vector, pressure: Vector, active: NDArray[np.bool_], tied: NDArray[np.bool_]
     ) -> NDArray[np.bool_]:
-        """As in ``Prepared``."""
+        """The next active set, predicted, as in ``Prepared``."""
         return self.predict(gap, pressure, active, tied)
 
     def respond(self, force: Vector, springs: Vector) -> Vector:
-        """As in ``Prepared``, to ``RESPONSE`` or as near as it gets."""
+        """Displacements by forces, without contact, as in ``Prepared``, to ``RESPONSE`` or as near as it gets."""
         motions = self.loose.motions
         small = np.linalg.pinv(self.loose.stiffness + motions.T @ (springs[:, None] * motions))
         answer, iterations, _ = fgmres(
@@ -167,8 +167,8 @@ class Multigrid:
         return problem
 
     def prepare(self, system: Linearised, previous: Prepared | None) -> Iterative:
-        """As in ``LinearSolver``: the hierarchy stays while the stiffness does, the rest while the operator does too; both
-        stay for a load step at large displacements, and where bodies flow."""
+        """Set up for a linearised problem, as in ``LinearSolver``: the hierarchy stays while the stiffness does, the
+        rest while the operator does too; both stay for a load step at large displacements, and where bodies flow."""
         if system.about is not None:
             return self._at_state(system, previous)
         known = previous if isinstance(previous, Iterative) and previous.system.stiffness is system.stiffness else None
@@ -219,12 +219,12 @@ class Multigrid:
         return Iterative(system, levels, beside, pressures, predict, self.count)
 
     def note(self, prepared: Prepared) -> str:
-        """As in ``LinearSolver``."""
+        """What is told of it, as in ``LinearSolver``."""
         return prepared.hierarchy.summary if isinstance(prepared, Iterative) else self.name
 
     @property
     def effort(self) -> str:
-        """As in ``LinearSolver``."""
+        """What is told of its work, as in ``LinearSolver``."""
         return self.count.effort
 
 

@@ -122,7 +122,7 @@ class SaddlePoint:
     repeated: Repeated = field(default_factory=Repeated)
 
     def solve(self, rows: Rows, residual: Vector, pressure: Vector, accuracy: float) -> tuple[Vector, Vector]:
-        """As in ``Prepared``."""
+        """One Newton system solved, as in ``Prepared``."""
         stiffness, operator, rows, more = _with_border(self.system.stiffness, self.system.columns, rows)
         residual, n = np.concatenate([residual, np.zeros(more)]), len(residual)
         if self.system.about is not None and len(pressure) == 0:
@@ -134,11 +134,11 @@ class SaddlePoint:
         return du[:n], dp
 
     def transposed(self, rows: Rows, force: Vector, gap: Vector, accuracy: float) -> tuple[Vector, Vector]:
-        """As in ``Transposable``."""
+        """The transposed system solved, as in ``Transposable``."""
         return by_factors(self.system, rows, force, gap)
 
     def factorise(self, rows: Rows) -> Solve:
-        """As in ``Prepared``."""
+        """Factors of the rows, for several right-hand sides, as in ``Prepared``."""
         stiffness, operator, rows, more = _with_border(self.system.stiffness, self.system.operator, rows)
         factors = factorise(stiffness, operator, rows)
 
@@ -149,7 +149,7 @@ class SaddlePoint:
         return solve if more else factors
 
     def respond(self, force: Vector, springs: Vector) -> Vector:
-        """As in ``Prepared``."""
+        """Displacements by forces, without contact, as in ``Prepared``."""
         sprung, more = with_border(self.system.stiffness + sp.diags(springs))
         factors = direct.Factorization(direct.store_diagonal(direct.upper(sprung)))
         return factors.solve(np.concatenate([force, np.zeros(more)]))[: len(force)]
@@ -157,7 +157,7 @@ class SaddlePoint:
     def foresee(
         self, gap: Vector, pressure: Vector, active: NDArray[np.bool_], tied: NDArray[np.bool_]
     ) -> NDArray[np.bool_]:
-        """As in ``Prepared``."""
+        """The next active set, predicted, as in ``Prepared``."""
         return self.predict(gap, pressure, active, tied)
 
 

@@ -29,7 +29,7 @@ class Count:
 
     @property
     def effort(self) -> str:
-        """As in ``LinearSolver``."""
+        """What is told of its work, as in ``LinearSolver``."""
         return f"{self.iterations} linear iterations in all"
 
 

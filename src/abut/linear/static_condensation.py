@@ -46,15 +46,16 @@ class CondensedProblem:
     refinements: int = REFINEMENTS
 
     def start(self) -> State:
-        """As in ``Problem``."""
+        """The state before the first load step, as in ``Problem``."""
         return self.restrict(self.whole.start())
 
     def frame(self, before: State, guess: State | None = None) -> Frame:
-        """As in ``Problem``."""
+        """What is fixed during a step, as in ``Problem``."""
         return self.whole.frame(before, guess)
 
     def linearise(self, before: State, frame: Frame, now: State) -> Linearised:
-        """As in ``Problem``; before: in all free displacements; the unknowns of ``now`` do not matter."""
+        """The problem near a trial state, as in ``Problem``; before: in all free displacements; the unknowns of ``now``
+        do not matter."""
         full = self.whole.linearise(before, frame, now)
         load = self._forward(full.load)
         offset = full.offset + load[self.first :]
@@ -64,33 +65,33 @@ class CondensedProblem:
         )  # fmt: skip
 
     def accepted(self, before: State, frame: Frame, now: State, system: Linearised) -> State:
-        """As in ``Problem``."""
+        """The converged state with its history, as in ``Problem``."""
         return self.whole.accepted(before, frame, now, system)
 
     def again(self, before: State, state: State) -> Linearised:
-        """As in ``Problem``."""
+        """The problem near a converged state, as in ``Problem``."""
         return self.whole.again(before, state)
 
     def restrict(self, state: State) -> State:
-        """As in ``Problem``."""
+        """A state in the unknowns of this problem, as in ``Problem``."""
         return replace(state, unknowns=state.unknowns[self.kept])
 
     def with_ordinary(self, closed: NDArray[np.bool_]) -> Problem:
-        """As in ``Problem``."""
+        """The problem with ordinary functions where contact is closed, as in ``Problem``."""
         other = self.whole.with_ordinary(closed)
         if other is self.whole:
             return self
         return condense(other) or other
 
     def alone_at_edges(self, closed: NDArray[np.bool_], state: State | None = None) -> NDArray[np.bool_]:
-        """As in ``Problem``."""
+        """What is closed alone at edges where both sides end, as in ``Problem``."""
         return self.whole.alone_at_edges(closed, state)
 
     def expand(
         self, before: State, frame: Frame, state: State, laws: Laws, system: Linearised
     ) -> tuple[State, Linearised]:
-        """As in ``Problem``. Eliminated stiff parts under soft ones lose digits by cancellation: the equations of the whole
-        problem are met anew by refinement."""
+        """A solution in all free displacements, as in ``Problem``. Eliminated stiff parts under soft ones lose digits by
+        cancellation: the equations of the whole problem are met anew by refinement."""
         near, whole = system, self.whole.linearise(before, frame, state)
         n, first = len(whole.load), self.first
         inner = self._forward(whole.load)

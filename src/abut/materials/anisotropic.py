@@ -66,16 +66,18 @@ class LocalElastic(OwnMaterial):
         return frames(self.axes, points[:1] if uniform(self.axes) else points)
 
     def at(self, places: Places) -> Directional:
-        """As in ``LocalMaterial``."""
+        """The material at points, with their axes and temperatures, as in ``LocalMaterial``."""
         swelling = places.change[:, None] * self.expansions if places.change.any() and self.expansions.any() else None
         return Directional(self.stiffness[None], self.frame(places.points), swelling)
 
     def evaluate(self, strain: Array, history: Array) -> Evaluated:
-        """As in ``Material``, for axes that are the same everywhere, without a change of temperature."""
+        """Stresses, tangents and histories at n points, as in ``Material``, for axes that are the same everywhere,
+        without a change of temperature."""
         return self._anywhere().evaluate(np.asarray(strain, dtype=float), history)
 
     def evaluate_finite(self, strain: Array, history: Array) -> Evaluated:
-        """As in ``FiniteMaterial``: the law of Saint Venant and Kirchhoff; axes as for ``evaluate``."""
+        """Stresses, tangents and histories at n points under finite strains, as in ``FiniteMaterial``: the law of Saint
+        Venant and Kirchhoff; axes as for ``evaluate``."""
         return self._anywhere().evaluate_finite(np.asarray(strain, dtype=float), history)
 
     def _anywhere(self) -> Directional:
@@ -85,7 +87,7 @@ class LocalElastic(OwnMaterial):
         return self.at(Places(np.zeros((1, 3 if first is None else len(first))), np.zeros(1)))
 
     def check(self, dim: int, plane: str | None, where: str) -> None:
-        """As in ``OwnMaterial``."""
+        """Refuse what the law cannot be used with, as in ``OwnMaterial``."""
         if isinstance(self.axes, Axes):
             self.axes.check(dim, where)
             if plane == "axisymmetric" and self.axes.kind != "rectangular":
@@ -155,7 +157,7 @@ class Orthotropic(LocalElastic):
 
     @cached_property
     def stiffness(self) -> Array:
-        """As in ``LocalElastic``."""
+        """Stiffness in the local axes, as in ``LocalElastic``."""
         (a, b, _), (xy, xz, yz) = self.young, self.poisson
         compliance = np.diag(1.0 / np.array([*self.young, *np.array(self.shear)[[0, 2, 1]]]))
         compliance[0, 1] = compliance[1, 0] = -xy / a
@@ -209,7 +211,7 @@ class Anisotropic(LocalElastic):
 
     @cached_property
     def stiffness(self) -> Array:
-        """As in ``LocalElastic``."""
+        """Stiffness in the local axes, as in ``LocalElastic``."""
         result = np.zeros((6, 6))
         entries = iter(self.constants)
         for column in range(6):

@@ -25,11 +25,11 @@ class Directional(OwnMaterial):
 
     @property
     def modulus(self) -> float:
-        """As in ``Material``."""
+        """Young's modulus, as a scale, as in ``Material``."""
         return mean_modulus(self.stiffness[0])
 
     def evaluate(self, strain: Array, history: Array) -> Evaluated:
-        """As in ``Material``."""
+        """Stresses, tangents and histories at n points, as in ``Material``."""
         turn = turned(self.frame)
         local = _applied(turn, strain)
         if self.swelling is not None:
@@ -37,8 +37,8 @@ class Directional(OwnMaterial):
         return self._told(turn, _applied(self.stiffness, local), self.stiffness, history)
 
     def evaluate_finite(self, strain: Array, history: Array) -> Evaluated:
-        """As in ``FiniteMaterial``: the law of Saint Venant and Kirchhoff; heat stretches along the local directions,
-        theory (A3)."""
+        """Stresses, tangents and histories at n points under finite strains, as in ``FiniteMaterial``: the law of Saint
+        Venant and Kirchhoff; heat stretches along the local directions, theory (A3)."""
         if self.swelling is None:
             return self.evaluate(strain, history)
         turn, stretch = turned(self.frame), 1.0 + self.swelling

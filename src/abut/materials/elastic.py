@@ -74,12 +74,13 @@ class LinearElastic:
         return self
 
     def compiled(self, finite: bool) -> Compiled | None:
-        """As in ``OwnMaterial``; under finite strains the law of Saint Venant and Kirchhoff."""
+        """The compiled law, as in ``OwnMaterial``; under finite strains the law of Saint Venant and Kirchhoff."""
         law = HyperelasticKernel(Hyperelastic.SAINT_VENANT_KIRCHHOFF) if finite else Isotropic()
         return Compiled(law, lame(self, None))
 
     def volume_split(self, finite: bool) -> VolumeSplit | None:
-        """As in ``OwnMaterial``; the law of Saint Venant and Kirchhoff has no part of the volume alone."""
+        """What the change of volume alone adds to energy and stress, as in ``OwnMaterial``; the law of Saint Venant and
+        Kirchhoff has no part of the volume alone."""
         if finite or not self.poisson > 0.0:
             return None
         bulk, rest = without_bulk(self)
@@ -90,7 +91,7 @@ class LinearElastic:
         return np.zeros((n, 0))
 
     def evaluate(self, strain: Array, history: Array) -> Evaluated:
-        """As in ``Material``."""
+        """Stresses, tangents and histories at n points, as in ``Material``."""
         lambda_, mu = lame(self, None)
         tangent = np.diag([2.0 * mu] * 3 + [mu] * 3)
         tangent[:3, :3] += lambda_

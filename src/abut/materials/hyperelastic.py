@@ -124,11 +124,11 @@ class NeoHooke:
         return np.zeros((n, 0))
 
     def evaluate(self, strain: Array, history: Array) -> Evaluated:
-        """As in ``Material``, for small strains."""
+        """Stresses, tangents and histories at n points, as in ``Material``, for small strains."""
         return self.linear.evaluate(strain, history)
 
     def compiled(self, finite: bool) -> Compiled | None:
-        """As in ``OwnMaterial``."""
+        """The compiled law, as in ``OwnMaterial``."""
         if not finite:
             return self.linear.compiled(False)
         lambda_, mu = self.moduli
@@ -136,7 +136,7 @@ class NeoHooke:
         return Compiled(HyperelasticKernel(LAWS[self.volumetric]), (first, mu))
 
     def volume_split(self, finite: bool) -> VolumeSplit | None:
-        """As in ``OwnMaterial``."""
+        """What the change of volume alone adds to energy and stress, as in ``OwnMaterial``."""
         lambda_, mu = self.moduli
         if not lambda_ > 0.0:
             return None

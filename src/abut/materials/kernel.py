@@ -81,7 +81,7 @@ class Isotropic:
     together: bool = True
 
     def integrate(self, at: At, wanted: Wanted) -> Unsound:
-        """As in ``Kernel``."""
+        """Forces, tangents and stresses of cells by the compiled law, as in ``Kernel``."""
         constants = at.constants
         if at.plane_stress:
             lambda_, mu = constants.T
@@ -108,11 +108,11 @@ class HyperelasticKernel:
 
     @property
     def name(self) -> str:
-        """As in ``Kernel``."""
+        """Of the compiled law, as in ``Kernel``."""
         return f"hyperelastic {self.law.value}"
 
     def integrate(self, at: At, wanted: Wanted) -> Unsound:
-        """As in ``Kernel``."""
+        """Forces, tangents and stresses of cells by the compiled law, as in ``Kernel``."""
         return integrate_hyperelastic(
             at.cells, at.constants, self.law, at.plane_stress, at.displacement, at.thermal, wanted.force, wanted.tangent,
             wanted.stress, wanted.energy, *at.earlier,
@@ -129,7 +129,7 @@ class PointKernel:
     together: bool = False
 
     def integrate(self, at: At, wanted: Wanted) -> Unsound:
-        """As in ``Kernel``."""
+        """Forces, tangents and stresses of cells by the compiled law, as in ``Kernel``."""
         return self.law.integrate(
             at.cells, self.finite, at.plane_stress, at.displacement, at.thermal, at.before, wanted.force, wanted.tangent,
             wanted.stress, wanted.energy, wanted.after, *at.earlier,

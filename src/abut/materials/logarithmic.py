@@ -84,19 +84,19 @@ class Hencky:
         return np.zeros((n, 0))
 
     def evaluate(self, strain: Array, history: Array) -> Evaluated:
-        """As in ``Material``."""
+        """Stresses, tangents and histories at n points, as in ``Material``."""
         return self.linear.evaluate(strain, history)
 
     def evaluate_finite(self, strain: Array, history: Array) -> Evaluated:
-        """As in ``FiniteMaterial``."""
+        """Stresses, tangents and histories at n points under finite strains, as in ``FiniteMaterial``."""
         return evaluated(_hooke(self.linear), strain, history, finite=True)
 
     def compiled(self, finite: bool) -> Compiled | None:
-        """As in ``OwnMaterial``."""
+        """The compiled law, as in ``OwnMaterial``."""
         return Compiled(PointKernel(_hooke(self.linear), True)) if finite else self.linear.compiled(False)
 
     def volume_split(self, finite: bool) -> VolumeSplit | None:
-        """As in ``OwnMaterial``."""
+        """What the change of volume alone adds to energy and stress, as in ``OwnMaterial``."""
         if not finite or not self.poisson > 0.0:
             return self.linear.volume_split(False)
         bulk, rest = without_bulk(self.linear)

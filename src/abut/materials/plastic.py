@@ -122,12 +122,13 @@ class Plastic:
 
     @property
     def symmetric(self) -> bool:
-        """As in ``OwnMaterial``: but for back stresses that fade."""
+        """Whether tangents are symmetric, as in ``OwnMaterial``: but for back stresses that fade."""
         return all(recall == 0.0 for _, recall in self.backstresses)
 
     @property
     def fields(self) -> MappingProxyType[str, slice]:
-        """As in ``OwnMaterial``: plastic strain (n, 6), equivalent plastic strain and plastic work per volume (n, 1)."""
+        """Columns of the history that are written, as in ``OwnMaterial``: plastic strain (n, 6), equivalent plastic
+        strain and plastic work per volume (n, 1)."""
         return FIELDS
 
     def initial(self, n: int) -> Array:
@@ -136,19 +137,20 @@ class Plastic:
         return np.zeros((n, 8 + 6 * len(self.backstresses)))
 
     def evaluate(self, strain: Array, history: Array) -> Evaluated:
-        """As in ``Material``."""
+        """Stresses, tangents and histories at n points, as in ``Material``."""
         return evaluated(self._law(), np.asarray(strain, dtype=float), history, finite=False)
 
     def evaluate_finite(self, strain: Array, history: Array) -> Evaluated:
-        """As in ``FiniteMaterial``."""
+        """Stresses, tangents and histories at n points under finite strains, as in ``FiniteMaterial``."""
         return evaluated(self._law(), np.asarray(strain, dtype=float), history, finite=True)
 
     def compiled(self, finite: bool) -> Compiled | None:
-        """As in ``OwnMaterial``."""
+        """The compiled law, as in ``OwnMaterial``."""
         return Compiled(PointKernel(self._law(), finite))
 
     def volume_split(self, finite: bool) -> VolumeSplit | None:
-        """As in ``OwnMaterial``: flow does not see the mean stress."""
+        """What the change of volume alone adds to energy and stress, as in ``OwnMaterial``: flow does not see the mean
+        stress."""
         if not self.poisson > 0.0:
             return None
         bulk, rest = without_bulk(self.linear)

@@ -26,17 +26,18 @@ class HeatedPlastic(OwnMaterial):
     modulus: float = 1.0
 
     def initial(self, n: int) -> Array:
-        """As in ``Material``."""
+        """The history before anything has happened, as in ``Material``."""
         return np.zeros((n, self.law.history))
 
     def evaluate(self, strain: Array, history: Array) -> Evaluated:
-        """As in ``Material``."""
+        """Stresses, tangents and histories at n points, as in ``Material``."""
         elastic = np.array(strain, dtype=float)
         elastic[:, :3] -= self.swelling[:, None]
         return self._told(elastic, history, False)
 
     def evaluate_finite(self, strain: Array, history: Array) -> Evaluated:
-        """As in ``FiniteMaterial``: heat stretches first, alike in all directions, theory (A3)."""
+        """Stresses, tangents and histories at n points under finite strains, as in ``FiniteMaterial``: heat stretches
+        first, alike in all directions, theory (A3)."""
         stretch = 1.0 + self.swelling
         elastic = np.array(strain, dtype=float)
         elastic[:, :3] -= 0.5 * (stretch**2 - 1.0)[:, None]
@@ -62,7 +63,7 @@ class HeatedKernel:
     together: bool = False
 
     def integrate(self, at: At, wanted: Wanted) -> Unsound:
-        """As in ``Kernel``."""
+        """Forces, tangents and stresses of cells by the compiled law, as in ``Kernel``."""
         assert at.change is not None
         temperature, swelling = self.initial_temperature + at.change, np.ascontiguousarray(self.swelling(at.change))
         found: Unsound = self.law.integrate(

@@ -78,7 +78,7 @@ class Prestressed(OwnMaterial):
         return result
 
     def at(self, places: Places) -> Material:
-        """As in ``LocalMaterial``."""
+        """The material at points, with their axes and temperatures, as in ``LocalMaterial``."""
         here, n = placed(self.material, places), len(places.points)
         held = self.held(places.points)
         tangent = here.evaluate(np.zeros((n, 6)), here.initial(n))[1]
@@ -88,7 +88,7 @@ class Prestressed(OwnMaterial):
         return _Held(here, strain)
 
     def evaluate(self, strain: Array, history: Array) -> Evaluated:
-        """As in ``Material``: of a stress that is the same everywhere."""
+        """Stresses, tangents and histories at n points, as in ``Material``: of a stress that is the same everywhere."""
         if any(callable(value) for value in self.stress):
             raise InputError(
                 f"{self.where}: initial_stress: it differs from place to place; ask for the material at some"
@@ -97,13 +97,13 @@ class Prestressed(OwnMaterial):
         return self.at(Places(np.zeros((1, dim)), np.zeros(1))).evaluate(np.asarray(strain, dtype=float), history)
 
     def evaluate_finite(self, strain: Array, history: Array) -> Evaluated:
-        """As in ``FiniteMaterial``, likewise."""
+        """Stresses, tangents and histories at n points under finite strains, as in ``FiniteMaterial``, likewise."""
         here = self.at(Places(np.zeros((1, 2 if len(self.stress) == 4 else 3)), np.zeros(1)))
         assert isinstance(here, _Held)
         return here.evaluate_finite(np.asarray(strain, dtype=float), history)
 
     def check(self, dim: int, plane: str | None, where: str) -> None:
-        """As in ``OwnMaterial``."""
+        """Refuse what the law cannot be used with, as in ``OwnMaterial``."""
         check_model(self.material, dim, plane, where)
         if len(self.stress) != len(NAMES[dim]):
             raise InputError(

@@ -103,19 +103,19 @@ class Rubber:
         return np.zeros((n, 0))
 
     def evaluate(self, strain: Array, history: Array) -> Evaluated:
-        """As in ``Material``, for small strains."""
+        """Stresses, tangents and histories at n points, as in ``Material``, for small strains."""
         return self.linear.evaluate(strain, history)
 
     def evaluate_finite(self, strain: Array, history: Array) -> Evaluated:
-        """As in ``FiniteMaterial``."""
+        """Stresses, tangents and histories at n points under finite strains, as in ``FiniteMaterial``."""
         return evaluated(self.energy.law(), strain, history, finite=True)
 
     def compiled(self, finite: bool) -> Compiled | None:
-        """As in ``OwnMaterial``."""
+        """The compiled law, as in ``OwnMaterial``."""
         return Compiled(PointKernel(self.energy.law(), True)) if finite else self.linear.compiled(False)
 
     def volume_split(self, finite: bool) -> VolumeSplit | None:
-        """As in ``OwnMaterial``."""
+        """What the change of volume alone adds to energy and stress, as in ``OwnMaterial``."""
         if not finite:
             return self.linear.volume_split(False)
         kept, (first, *others) = self.energy.shear / 3.0, self._volume
@@ -155,7 +155,7 @@ class MooneyRivlin(Rubber):
 
     @property
     def energy(self) -> Energy:
-        """As in ``Rubber``."""
+        """Energy by the invariants, with derivatives, as in ``Rubber``."""
         c10, c01 = checks.finite(self.c10, "c10"), checks.finite(self.c01, "c01")
         return Energy(((2.0 * c10, 2.0), (-2.0 * c01, -2.0)), (), self._volume)
 
@@ -188,7 +188,7 @@ class Yeoh(Rubber):
 
     @property
     def energy(self) -> Energy:
-        """As in ``Rubber``."""
+        """Energy by the invariants, with derivatives, as in ``Rubber``."""
         return Energy((), tuple(checks.finite(getattr(self, k), k) for k in ("c10", "c20", "c30")), self._volume)
 
 
@@ -229,7 +229,7 @@ class Ogden(Rubber):
 
     @property
     def energy(self) -> Energy:
-        """As in ``Rubber``."""
+        """Energy by the invariants, with derivatives, as in ``Rubber``."""
         return Energy(tuple((mu, alpha) for mu, alpha in self.terms), (), self._volume)
 
 
@@ -262,7 +262,8 @@ class ArrudaBoyce(Rubber):
 
     @property
     def energy(self) -> Energy:
-        """As in ``Rubber``: powers of I less those of 3, written as powers of I - 3."""
+        """Energy by the invariants, with derivatives, as in ``Rubber``: powers of I less those of 3, written as powers
+        of I - 3."""
         shear, locking = checks.positive(self.shear, "shear"), checks.positive(self.locking, "locking")
         factors = [shear * c / locking ** (2 * i) for i, c in enumerate(CHAIN)]
         powers = [

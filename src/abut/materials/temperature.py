@@ -109,21 +109,21 @@ class OverTemperature(OwnMaterial):
 
     @property
     def volume_preserving(self) -> bool:  # type: ignore[override]
-        """As in ``OwnMaterial``: flow keeps the volume."""
+        """Whether the volume hardly changes where most is strained, as in ``OwnMaterial``: flow keeps the volume."""
         return bool(self._metals)
 
     @property
     def symmetric(self) -> bool:  # type: ignore[override]
-        """As in ``OwnMaterial``: of metal as of each of its materials."""
+        """Whether tangents are symmetric, as in ``OwnMaterial``: of metal as of each of its materials."""
         return all(material.symmetric for material in self.materials if isinstance(material, Plastic))
 
     @property
     def fields(self) -> Mapping[str, slice]:  # type: ignore[override]
-        """As in ``OwnMaterial``."""
+        """Columns of the history that are written, as in ``OwnMaterial``."""
         return FIELDS if self._metals else {}
 
     def initial(self, n: int) -> Array:
-        """As in ``Material``."""
+        """The history before anything has happened, as in ``Material``."""
         law = self._flowing
         return np.zeros((n, 0 if law is None else law.history))
 
@@ -136,7 +136,7 @@ class OverTemperature(OwnMaterial):
         return self.materials[int(nearest)].modulus
 
     def at(self, places: Places) -> Material:
-        """As in ``LocalMaterial``."""
+        """The material at points, with their axes and temperatures, as in ``LocalMaterial``."""
         now = self.initial_temperature + places.change
         law = self._flowing
         if law is not None:
@@ -151,27 +151,29 @@ class OverTemperature(OwnMaterial):
         return Directional(stiffness, frame, self._swelling(places.change) if places.change.any() else None)
 
     def compiled(self, finite: bool) -> Compiled | None:
-        """As in ``OwnMaterial``: metal that yields."""
+        """The compiled law, as in ``OwnMaterial``: metal that yields."""
         law = self._flowing
         if law is None:
             return None
         return Compiled(HeatedKernel(law, self.initial_temperature, self._swelling_alike, finite))
 
     def evaluate(self, strain: Array, history: Array) -> Evaluated:
-        """As in ``Material``, at the temperature of the beginning, for axes that are the same everywhere."""
+        """Stresses, tangents and histories at n points, as in ``Material``, at the temperature of the beginning, for
+        axes that are the same everywhere."""
         if not self._isotropic:
             self._local[0].evaluate(strain, history)  # which says where it has to be asked
         return self.at(Places(np.zeros((1, 3)), np.zeros(1))).evaluate(np.asarray(strain, dtype=float), history)
 
     def evaluate_finite(self, strain: Array, history: Array) -> Evaluated:
-        """As in ``FiniteMaterial``: the law of Saint Venant and Kirchhoff, of metal that in logarithmic strains."""
+        """Stresses, tangents and histories at n points under finite strains, as in ``FiniteMaterial``: the law of Saint
+        Venant and Kirchhoff, of metal that in logarithmic strains."""
         here = self.at(Places(np.zeros((1, 3)), np.zeros(1)))
         if isinstance(here, HeatedPlastic):
             return here.evaluate_finite(np.asarray(strain, dtype=float), history)
         return self.evaluate(strain, history)
 
     def check(self, dim: int, plane: str | None, where: str) -> None:
-        """As in ``OwnMaterial``."""
+        """Refuse what the law cannot be used with, as in ``OwnMaterial``."""
         for material in self._local:
             material.check(dim, plane, where)
 

@@ -35,7 +35,7 @@ class Powers:
     factors: Sequence[float]
 
     def evaluate(self, growth: Array) -> tuple[Array, Array, Array]:
-        """As in ``VolumeLaw``."""
+        """Energy of the change of volume, with derivatives, as in ``VolumeLaw``."""
         energy, slope, bend = (np.zeros_like(growth) for _ in range(3))
         for i, k in enumerate(self.factors, 1):
             n, last = 2 * i, growth ** (2 * i - 2)
@@ -52,7 +52,7 @@ class LogSquared:
     modulus: float
 
     def evaluate(self, growth: Array) -> tuple[Array, Array, Array]:
-        """As in ``VolumeLaw``."""
+        """Energy of the change of volume, with derivatives, as in ``VolumeLaw``."""
         log, j = np.log1p(growth), 1.0 + growth
         return 0.5 * self.modulus * log**2, self.modulus * log / j, self.modulus * (1.0 - log) / j**2
 
@@ -64,7 +64,7 @@ class SquareLog:
     modulus: float
 
     def evaluate(self, growth: Array) -> tuple[Array, Array, Array]:
-        """As in ``VolumeLaw``."""
+        """Energy of the change of volume, with derivatives, as in ``VolumeLaw``."""
         j, half = 1.0 + growth, 0.5 * self.modulus
         energy = half * (growth * (2.0 + growth) / 2.0 - np.log1p(growth))
         return energy, half * growth * (2.0 + growth) / j, half * (1.0 + 1.0 / j**2)

@@ -73,7 +73,7 @@ class OneStep:
 
     @property
     def amplitudes(self) -> Sequence[History]:
-        """As in ``Physics``, as all that follows: it adds nothing else."""
+        """Histories that terms go by, as in ``Physics``, as all that follows: it adds nothing else."""
         return ()
 
     def fields(self, mesh: Mesh) -> Sequence[Field]:
@@ -89,7 +89,7 @@ class OneStep:
         return ()
 
     def begins(self, n_values: int) -> Rates:
-        """As in ``TimeIntegration``."""
+        """Rates at the outset, as in ``TimeIntegration``."""
         given = {"velocities": self.velocities, "accelerations": self.accelerations}
         for name, values in given.items():
             if values is not None and np.shape(values) != (n_values,):
@@ -99,7 +99,7 @@ class OneStep:
         return Rates(velocities, accelerations)
 
     def after(self, before: Rates, moved: Array, step: float) -> Rates:
-        """As in ``TimeIntegration``."""
+        """Rates at the end of a step, as in ``TimeIntegration``."""
         h = step * self.duration
         return before if h == 0.0 else self._after(before, moved, h)
 

@@ -82,9 +82,13 @@ class SolveOptions:
         count = self.steps if isinstance(self.steps, int) else 1
         return self.times or tuple(number / count for number in range(1, count + 1))
 
+    def time(self, share: float) -> float:
+        """A time, from its share of the end."""
+        return share * self.end
+
     def said(self, share: float) -> str:
-        """A time in words, from its share of the end."""
-        return f"{share * self.end:.4g} of {self.end:.4g}"
+        """The same in words."""
+        return f"{self.time(share):.4g} of {self.end:.4g}"
 
     def _check_times(self) -> None:
         try:

@@ -33,13 +33,13 @@ class Factors:
         object.__setattr__(self, "_factors", direct.Factorization(direct.store_diagonal(whole), quick=True))
 
     def solve(self, force: Vector) -> Vector:
-        """As in ``Factored``."""
+        """Solutions of one system, as in ``Factored``."""
         rhs = np.concatenate([force, np.zeros(len(self._scale))])
         return np.asarray(self._factors.solve(rhs)[: len(force)])
 
     @property
     def negative(self) -> int | None:
-        """As in ``Factored``."""
+        """How many eigenvalues are negative, as in ``Factored``."""
         count = self._factors.negative
         return None if count is None else count - len(self._scale)
 
@@ -58,9 +58,9 @@ class Alone:
     """As ``abut.modes.held.Eigensolver``, on one process: PARDISO or SuperLU, and ARPACK."""
 
     def factors(self, matrix: Sparse, held: Held) -> Factors:
-        """As in ``Eigensolver``."""
+        """Factors of a symmetric matrix, as in ``Eigensolver``."""
         return Factors(matrix.tocsr(), held)
 
     def largest(self, pencil: Pencil, count: int, seed: int = 0) -> Pairs:
-        """As in ``Eigensolver``."""
+        """The largest eigenvalues and their vectors, as in ``Eigensolver``."""
         return largest(pencil, count, seed)

@@ -40,7 +40,8 @@ def coriolis(model: Model, time: float) -> tuple[Sparse, float]:
         speeds.append(abs(load.speed) * float(np.sqrt(factor)))
         total = total + 2.0 * np.sqrt(factor) * mass(model.mesh, own, load.velocity(model.dim))
     if not max(speeds):
-        raise InputError(f"frequencies: coriolis: nothing turns at time {time:g}; give a load of kind centrifugal")
+        at = model.solve.time(time)
+        raise InputError(f"frequencies: coriolis: nothing turns at time {at:g}; give a load of kind centrifugal")
     return total.tocsr(), max(speeds)
 
 

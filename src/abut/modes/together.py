@@ -39,7 +39,8 @@ class FactorsOfTeam:
         object.__setattr__(self, "_rows", n)
 
     def solve(self, force: Vector) -> Vector:
-        """As in ``Factored``. Raises InputError where memory does not suffice, and SingularModelError."""
+        """Solutions of one system, as in ``Factored``. Raises InputError where memory does not suffice, and
+        SingularModelError."""
         if not force.any():
             return np.zeros(len(force))
         layout, team = self.matrix.layout, self.matrix.team
@@ -48,7 +49,7 @@ class FactorsOfTeam:
 
     @property
     def negative(self) -> int | None:
-        """As in ``Factored``."""
+        """How many eigenvalues are negative, as in ``Factored``."""
         count: int | None = self.matrix.team.each(negative, self.kept.number)[0]
         return None if count is None else count - self._rows
 
@@ -60,11 +61,11 @@ class Together:
     team: Team
 
     def factors(self, matrix: Distributed, held: Held) -> FactorsOfTeam:
-        """As in ``Eigensolver``."""
+        """Factors of a symmetric matrix, as in ``Eigensolver``."""
         return FactorsOfTeam(matrix.whole(), held)
 
     def largest(self, pencil: Pencil, count: int, seed: int = 0) -> Pairs:
-        """As in ``Eigensolver``."""
+        """The largest eigenvalues and their vectors, as in ``Eigensolver``."""
         factors, left, metric = pencil.factors, pencil.left.whole(), pencil.metric.whole()
         assert isinstance(factors, FactorsOfTeam)
         count, basis = pencil.wanted(count)

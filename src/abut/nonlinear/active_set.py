@@ -84,7 +84,7 @@ class ActiveSet(Method[Trial]):
         return self._settings.accuracy.stride if settle else self._settings.accuracy.rough
 
     def advanced(self, here: Trial) -> Trial:
-        """As in ``Method``."""
+        """One iteration, as in ``Method``."""
         try:
             solved = solve_set(self._solver, here.state, self._increment, self._tied, self._log.next, here.accuracy)
         except SingularModelError as reason:
@@ -94,7 +94,7 @@ class ActiveSet(Method[Trial]):
         return Trial(solved.state, here.accuracy, solved)
 
     def ended(self, there: Trial) -> End | None:
-        """As in ``Method``. Raises SingularModelError where nothing holds a body."""
+        """Whether, and why, iterations end, as in ``Method``. Raises SingularModelError where nothing holds a body."""
         if there.solved is None:
             _check_balance(self._solver)
             decided = self._tied | self._solver.system.away

@@ -18,10 +18,6 @@ from abut.problem.problem import ContactProblem, Problem
 from abut.problem.terms import Motion, Share
 from abut.solution import Iteration
 
-# Of the largest force and pressure, left by iterative solvers: the forces change these by some percent, and what the
-# correction itself leaves of pressures and stresses is a percent or more.
-ENOUGH = 1e-3
-
 
 @dataclass(frozen=True)
 class Imposed:
@@ -32,7 +28,7 @@ class Imposed:
     constant: bool = True
 
     def evaluate(self, before: Motion, now: Motion) -> Share:
-        """As in ``Term``."""
+        """Force, tangent and history at a state, as in ``Term``."""
         return Share(self.force)
 
 
@@ -52,7 +48,7 @@ class Again:
         """The end of a step (without friction, since it begins with its own end) with these forces. Raises
         SingularModelError and NotConverged."""
         increment = Increment(attempt.number, attempt.state.largest, self.settings)
-        search = _roughly(self.search)
+        search = _roughly(self.search, self.settings.accuracy.further)
         task = Task(_with(self.problem, imposed), attempt.state, self.solver, increment, self.limit, _unseen, search)
         return load_step(task, attempt.time, self.prepared)
 
@@ -65,13 +61,13 @@ def _with(problem: Problem, imposed: Imposed) -> Problem:
     return replace(problem, terms=(*problem.terms, imposed))
 
 
-def _roughly(search: Search) -> Search:
-    """A search that solvers which are not exact do to ``ENOUGH``."""
+def _roughly(search: Search, enough: float) -> Search:
+    """A search that solvers which are not exact do well ``enough``."""
 
     def found(solver: Prepared, *rest: Any, **further: Any) -> Found:
         solver = replace(cast(Any, solver), predict=_as_asked)
         if not solver.exact:
-            solver = replace(cast(Any, solver), accurate=max(ENOUGH, solver.accurate))
+            solver = replace(cast(Any, solver), accurate=max(enough, solver.accurate))
         return search(solver, *rest, **further)
 
     return found

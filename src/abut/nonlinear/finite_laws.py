@@ -14,10 +14,9 @@ from abut.contact.laws import Law, LawState
 from abut.nonlinear.friction_laws import next_status
 from abut.nonlinear.iteration import Increment
 from abut.nonlinear.laws import Asked, friction_laws
-from abut.nonlinear.settings import NOTHING
 from abut.problem.current import bare
 from abut.problem.laws import SOFT, LawRows, at_multipliers
-from abut.problem.linearised import Linearised
+from abut.problem.linearised import NOTHING, Linearised
 from abut.problem.pair import Pair
 from abut.solution.state import CLOSED, OPEN, SLIPPING, State
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from abut.nonlinear.settings import NOTHING, Settings
+from abut.nonlinear.settings import Settings
+from abut.problem.linearised import NOTHING
 
 
 def forcing(error: float, before: float, settings: Settings) -> float:

@@ -6,8 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.nonlinear.iteration import Increment
-from abut.nonlinear.settings import NOTHING
-from abut.problem.linearised import Linearised
+from abut.problem.linearised import NOTHING, Linearised
 from abut.problem.pair import Pair
 from abut.solution.state import CLOSED, OPEN, SLIPPING, State
 

@@ -163,10 +163,10 @@ def lifted(system: Linearised, before: State) -> str:
     return f"the loads carry it off what it touches: {motion}; hold it by a support, or move it to where it rests"
 
 
-def overcome(system: Linearised) -> str:
-    """Which body the loads of ``system`` move although contact pushes and rubs all that it can, where the mesh has it; empty
-    where none."""
+def overcome(system: Linearised, time: float) -> str:
+    """Which body the loads of ``system``, at a ``time`` of the run, move although contact pushes and rubs all that it can,
+    where the mesh has it; empty where none."""
     motion = system.restraint.at(system.factors).unbalanced(system.forces)
     if not motion:
         return ""
-    return f"the loads at time {system.time:.4g} are more than contact bears where the mesh has it: {motion}"
+    return f"the loads at time {time:.4g} are more than contact bears where the mesh has it: {motion}"

@@ -10,10 +10,6 @@ from abut.nonlinear.hanging import place
 from abut.problem.problem import ContactProblem
 from abut.solution.state import State
 
-FOLDED = (
-    0.5  # of a cell's own change of volume, at a point of it: of what keeps its volume elsewhere hardly any differs
-)
-
 
 class Fold(NamedTuple):
     """share: the least change of volume at a point of a cell with F-bar over that of the cell, of which first is the first
@@ -43,13 +39,14 @@ def fold(problem: ContactProblem, state: State) -> Fold | None:
     return least
 
 
-def folds_at_once(problem: ContactProblem, before: State, now: State) -> str:
-    """Of a step that has converged: why it is not taken where cells fold by more than half; empty where none does.
+def folds_at_once(problem: ContactProblem, before: State, now: State, folded: float) -> str:
+    """Of a step that has converged: why it is not taken where cells fold by more than a share ``folded``; empty where none
+    does.
 
     There equilibria are close to each other, and Newton's method gets to one that no path of small steps leads to. Without
     it ``test_swap.py::test_json_decks_and_mistakes`` fails: the pad of ``examples/deck`` differs by a quarter."""
     here, earlier = fold(problem, now), fold(problem, before)
-    if here is None or earlier is None or here.share >= FOLDED * earlier.share:
+    if here is None or earlier is None or here.share >= folded * earlier.share:
         return ""
     return (
         f"cells of body '{here.body}' fold at once: at a point {_where(problem, here)}, the change of volume is "
@@ -57,13 +54,13 @@ def folds_at_once(problem: ContactProblem, before: State, now: State) -> str:
     )
 
 
-def hourglassing(problem: ContactProblem, state: State) -> str:
+def hourglassing(problem: ContactProblem, state: State, folded: float) -> str:
     """Which body with F-bar has a cell that folds, at a converged state, and what to do; empty where none does.
 
     F-bar holds the volume of a cell at its centre alone (theory (D7)). Under strong compression its stiffness loses
     definiteness along motions that leave the centre as it is, and points of a cell shrink until one turns inside out."""
     worst = fold(problem, state)
-    if worst is None or worst.share >= FOLDED:
+    if worst is None or worst.share >= folded:
         return ""
     return (
         f"cells of body '{worst.body}' fold as hourglasses, which F-bar does not resist under strong compression: at "

@@ -17,9 +17,10 @@ from numpy.typing import NDArray
 from abut.linear.solver import Prepared, Solve
 from abut.nonlinear.cones import Scaling, depth, longest, mirrored, product, quotient, scaling, times
 from abut.nonlinear.repeated_solutions import solutions
-from abut.nonlinear.settings import NOTHING, Settings
+from abut.nonlinear.settings import Settings
 from abut.nonlinear.softness import softness
 from abut.problem.laws import LawRows
+from abut.problem.linearised import NOTHING
 from abut.problem.pair import Pair
 from abut.solution.state import State
 

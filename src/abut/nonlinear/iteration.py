@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.linear.solver import Prepared
-from abut.nonlinear.settings import DEFAULT, NOTHING, Settings
+from abut.nonlinear.settings import DEFAULT, Settings
 from abut.problem.laws import LawRows
-from abut.problem.linearised import Linearised
+from abut.problem.linearised import NOTHING, Linearised
 from abut.problem.problem import Laws
 from abut.solution import Iteration
 from abut.solution.state import Largest, State

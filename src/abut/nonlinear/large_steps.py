@@ -31,10 +31,10 @@ class LargeSteps:
         control.prepared(f"{solver.name}, new in every {'iteration' if solver.count is None else 'step'}")
 
     def prepare(self) -> None:
-        """As in ``Stepper``: every step sets up its own."""
+        """Set up what serves all iterations, as in ``Stepper``: every step sets up its own."""
 
     def attempts(self, begin: Begin, pace: Pace) -> Sequence[Attempt]:
-        """As in ``Stepper``; under a drag where no other step is short enough."""
+        """The step, or its parts, as in ``Stepper``; under a drag where no other step is short enough."""
         assert pace.end is not None
         before, time = begin.before, pace.end
         setting = Setting(
@@ -50,11 +50,11 @@ class LargeSteps:
         return [attempt] if attempt.converged or not pace.last else _led(setting, before, pace, attempt)
 
     def replace(self, solver: LinearSolver) -> None:
-        """As in ``Stepper``: for this step."""
+        """Go on with another linear solver, as in ``Stepper``: for this step."""
         self._stands_in = solver
 
     def end(self) -> None:
-        """As in ``Stepper``."""
+        """The step has converged, as in ``Stepper``."""
         self._stands_in = None
 
     def _guess(self, begin: Begin, pace: Pace) -> State | None:
@@ -80,9 +80,11 @@ def _led(setting: Setting, before: State, pace: Pace, failed: Attempt) -> Sequen
     where = hanging(setting.problem, before, failed.cycling)
     frame = setting.problem.ended(before)
     away = lifted(setting.problem.ahead(before, frame, time), before)
-    more = "" if away or goal is None else overcome(setting.problem.ahead(before, frame, goal))
+    more = ""
+    if goal is not None and not away:
+        more = overcome(setting.problem.ahead(before, frame, goal), setting.problem.model.solve.time(goal))
     law = gives_way(setting.problem, failed.reason)
-    folded = hourglassing(setting.problem, before)
+    folded = hourglassing(setting.problem, before, setting.settings.steps.folded)
     told = (failed.reason, law, folded, where, away, more, led.attempts[-1].reason)
     return [replace(failed, reason="; ".join(filter(None, told)))]
 

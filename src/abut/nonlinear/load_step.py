@@ -99,7 +99,7 @@ class Bodies(Method[Trial]):
         return Trial(found, prepared, system, max(imbalance(system, found.state, task.increment), law))
 
     def advanced(self, here: Trial) -> Trial:
-        """As in ``Method``."""
+        """One iteration, as in ``Method``."""
         before, self._before = self._before, here.error
         return self.searched(
             here.system, here.prepared, here.found.state, here.found.iterations, True, here.error, before
@@ -116,7 +116,7 @@ class Bodies(Method[Trial]):
         return replace(prepared, accurate=max(prepared.accurate, worth))
 
     def ended(self, there: Trial) -> End | None:
-        """As in ``Method``."""
+        """Whether, and why, iterations end, as in ``Method``."""
         asked, error = self._task.increment.settings.newton, there.error
         if not there.found.converged:
             return End.STALLED

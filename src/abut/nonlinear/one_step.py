@@ -13,19 +13,18 @@ import numpy as np
 from abut.linear.solver import LinearSolver
 from abut.nonlinear.attempt import UNSTEADY, Attempt
 from abut.nonlinear.drag import Drag, scale
+from abut.nonlinear.frames import Solved, in_frame_of_end
 from abut.nonlinear.hourglass import folds_at_once
 from abut.nonlinear.iteration import Found, Increment, largest_so_far
 from abut.nonlinear.pace import Pace
 from abut.nonlinear.semismooth import Step, solve_finite
 from abut.nonlinear.settings import DEFAULT, Settings
 from abut.problem.balance import Balance
-from abut.problem.edge_trials import on_trial, refuses, with_refused
+from abut.problem.frame import Frame
 from abut.problem.problem import ContactProblem
 from abut.problem.stabilising import with_drag
 from abut.solution import Iteration
 from abut.solution.state import State
-
-AGAIN = 1  # times that a step is solved with the frame that belongs to its end, where that is another one
 
 
 @dataclass(frozen=True)
@@ -49,37 +48,46 @@ class Setting:
         begin, guess = problem.handed(before, known, frame), guess and problem.handed(guess, known, frame)
         increment = Increment(self.number, before.largest, self.settings)
         step = Step(problem, begin, frame, self.solver, increment, self.limit, self.observe, careful=careful, drag=drag)
-        found = solve_finite(step, guess, time)
-        earlier = frame, found.state
-        for done in range(AGAIN + self.settings.steps.solutions):
-            frame = step.frame
-            if found.converged and (done < AGAIN or frame.wet or on_trial(frame)):
-                frame = problem.settled(step.before, step.frame, replace(found.state, time=time))
-                frame = frame if done < AGAIN else with_refused(step.frame, frame).with_wet(frame.wet)
-            if frame is step.frame:
-                break
-            refused, last = refuses(step.frame, frame), (step.frame, found.state)
-            begin = problem.handed(step.before, step.frame, frame)
-            was, state = earlier if refused else last  # what was refused has moved all off
-            guess = problem.handed(state, was, frame)
-            again = replace(step, before=begin, frame=frame, limit=step.limit + len(step.done))
-            inside = solve_finite(again, guess, time)
-            if not (inside.converged or refused) and frame.wet is step.frame.wet:
-                break
-            step, found, earlier = again, inside, last
-        if found.converged and _spreads_on(step, found, time):
-            step.failed, found = UNSTEADY, replace(found, converged=False)
+        solved = _Solved(step, solve_finite(step, guess, time), time)
+        solved = in_frame_of_end(problem, solved, self.settings.steps.solutions)
+        step, found = solved.step, solved.found
         if found.converged:
-            step.failed = folds_at_once(problem, before, found.state)
+            step.failed = folds_at_once(problem, before, found.state, self.settings.steps.folded)
             found = replace(found, converged=not step.failed)
         return _ended(step, found, time)
 
 
-def _spreads_on(step: Step, found: Found, time: float) -> bool:
-    """Whether fluids get elsewhere than where the step has them."""
-    if not step.frame.wet:
-        return False
-    return step.problem.settled(step.before, step.frame, replace(found.state, time=time)).wet is not step.frame.wet
+@dataclass(frozen=True)
+class _Solved(Solved):
+    """As in ``Solved``: a step that was to end at ``time``, and what it came to."""
+
+    step: Step
+    found: Found
+    time: float
+
+    @property
+    def before(self) -> State:
+        return self.step.before
+
+    @property
+    def frame(self) -> Frame:
+        return self.step.frame
+
+    @property
+    def end(self) -> State:
+        return replace(self.found.state, time=self.time)
+
+    @property
+    def converged(self) -> bool:
+        return self.found.converged
+
+    def again(self, before: State, frame: Frame, guess: State) -> _Solved:
+        step = replace(self.step, before=before, frame=frame, limit=self.step.limit + len(self.step.done))
+        return replace(self, step=step, found=solve_finite(step, guess, self.time))
+
+    def unsteady(self) -> _Solved:
+        self.step.failed = UNSTEADY
+        return replace(self, found=replace(self.found, converged=False))
 
 
 def _ended(step: Step, found: Found, time: float) -> Attempt:

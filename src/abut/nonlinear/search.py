@@ -91,7 +91,7 @@ class InteriorContact(Method[Inside]):
         self._best, self._idle = (np.inf, np.inf), 0
 
     def advanced(self, here: Inside) -> Inside:
-        """As in ``Method``."""
+        """One iteration, as in ``Method``."""
         clock, polish, programme = time.perf_counter(), self._polish, self._programme
         system, increment, log, tied = polish.solver.system, polish.increment, polish.log, polish.tied
         inside = iterate(near(programme, here.here), self._manner)
@@ -110,7 +110,7 @@ class InteriorContact(Method[Inside]):
         return Inside(inside, active, floor, True, polish.from_set(told))
 
     def ended(self, there: Inside) -> End | None:
-        """As in ``Method``."""
+        """Whether, and why, iterations end, as in ``Method``."""
         if there.polished and there.solved is not None and not there.solved.changed.any():
             return End.SOLVED
         if there.floor:
@@ -154,7 +154,7 @@ class Polish(Method[Exact]):
         return newton(self, begin, self.log.last - len(self.log.done))[0].solved
 
     def advanced(self, here: Exact) -> Exact:
-        """As in ``Method``."""
+        """One iteration, as in ``Method``."""
         try:
             solved = solve_set(self.solver, here.state, self.increment, self.tied, self.log.next, here.accuracy)
         except SingularModelError:
@@ -163,7 +163,7 @@ class Polish(Method[Exact]):
         return Exact(solved.state, here.accuracy, solved)
 
     def ended(self, there: Exact) -> End | None:
-        """As in ``Method``."""
+        """Whether, and why, iterations end, as in ``Method``."""
         if there.singular or there.solved is None:
             return End.STALLED
         settings, changed = self.increment.settings, int(there.solved.changed.sum())

@@ -31,11 +31,12 @@ from abut.nonlinear.iteration import Found, Increment, advance, largest_pressure
 from abut.nonlinear.laws import Asked, friction_laws
 from abut.nonlinear.line_search import shortened
 from abut.nonlinear.newton import End, Method, newton
-from abut.nonlinear.settings import NOTHING, Settings
+from abut.nonlinear.settings import Settings
 from abut.nonlinear.unsettled import circling, most_at
+from abut.problem.expanded import SLIGHT
 from abut.problem.frame import Frame
 from abut.problem.laws import LawRows
-from abut.problem.linearised import Linearised
+from abut.problem.linearised import NOTHING, Linearised
 from abut.problem.problem import ContactProblem
 from abut.solution import Iteration
 from abut.solution.state import CLOSED, State
@@ -185,7 +186,7 @@ class LargeMotion(Method[Trial]):
         self._before, self._errors, self._swapped = np.inf, list[float](), False
 
     def advanced(self, here: Trial) -> Trial:
-        """As in ``Method``."""
+        """One iteration, as in ``Method``."""
         step = self._step
         accuracy = forcing(here.error, self._before, step.settings)
         following, self._swapped = _following(step, here, self._closings, accuracy)
@@ -205,7 +206,7 @@ class LargeMotion(Method[Trial]):
         return there
 
     def ended(self, there: Trial) -> End | None:
-        """As in ``Method``."""
+        """Whether, and why, iterations end, as in ``Method``."""
         step = self._step
         if step.failed:
             return End.STALLED
@@ -307,7 +308,7 @@ def _judged(step: Step, own: Linearised, state: State, guessed: bool = False) ->
     changed = state.status != before
     so_far = largest_so_far(system, state, step.increment)
     modulus = max((pair.stiffness * pair.size for pair in system.pairs), default=1.0)
-    forces, pressures = max(so_far.force, NOTHING), max(so_far.pressure, step.settings.newton.faint * modulus)
+    forces, pressures = max(so_far.force, NOTHING), max(so_far.pressure, SLIGHT * modulus)
     left = system.relative(system.unbalanced(state), forces)
     law = left_open(system, laws, step.asked) / pressures
     return Trial(

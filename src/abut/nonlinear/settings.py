@@ -8,8 +8,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-NOTHING = 1e-300  # what divides where there is nothing: no threshold
-
 
 def _of(default: float, unit: str, meaning: str, model: str) -> Any:
     return field(default=default, metadata={"unit": unit, "meaning": meaning, "model": model})
@@ -30,9 +28,6 @@ class NewtonSettings:
     rounding: float = _of(
         1e-12, "of Young's modulus, of the largest stiffness, of the time of a run", "what is nothing but rounding",
         "test_rolling.py",
-    )  # fmt: skip
-    faint: float = _of(
-        1e-5, "of Young's modulus", "least pressure that laws are judged by", "test_coming_off.py",
     )  # fmt: skip
     halvings: int = _of(6, "halvings", "of a step by a line search", "test_stabilised.py::test_an_arch_snaps_through")
     patience: int = _of(3, "iterations", "without progress, or of a short try", "test_search.py")
@@ -60,6 +55,10 @@ class AccuracySettings:
     share: float = _of(0.5, "of the last reduction squared", "left next (Eisenstat, Walker 1996)", "test_forcing.py")
     spare: float = _of(0.3, "of what may be left", "aimed at in the last solution", "test_forcing.py")
     stride: float = _of(1e-4, "of the residual", "at most in one solve while a set may change", "test_multigrid.py")
+    further: float = _of(
+        1e-3, "of forces and pressures", "left in a step solved again under further forces, some percent of its own",
+        "test_second_solution.py",
+    )  # fmt: skip
     told: float = _of(0.2, "of forces and pressures", "left in a state that tells the next set", "test_multigrid.py")
 
 
@@ -81,6 +80,10 @@ class StepSettings:
     smallest: float = _of(
         1.0 / 4096.0, "of the way to the next goal", "step; its root where the user gives steps", "test_pace.py",
     )  # fmt: skip
+    folded: float = _of(
+        0.5, "of a cell's change of volume", "that a point of it may differ by at once; hardly any does where F-bar holds",
+        "test_swap.py::test_json_decks_and_mistakes",
+    )  # fmt: skip
     careful: int = _of(
         2, "cuts in a row", "from which on a line search shortens iterations", "test_stabilised.py",
     )  # fmt: skip
@@ -97,6 +100,9 @@ class HoldingSettings:
     near: float = _of(
         0.1, "facets", "an iteration may move bodies along motions that nothing resists",
         "test_corners.py::test_pin_that_falls",
+    )  # fmt: skip
+    absurd: float = _of(
+        1e6, "sizes of the model", "that no units explain as a displacement", "test_result_size.py",
     )  # fmt: skip
     gone: float = _of(
         2.0, "sizes of the model", "beyond which a body has flown off",

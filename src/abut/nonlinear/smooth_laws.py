@@ -127,7 +127,7 @@ class SmoothLaws(Method[Trial]):
         )
 
     def advanced(self, here: Trial) -> Trial:
-        """As in ``Method``."""
+        """One iteration, as in ``Method``."""
         self._clock = time.perf_counter()
         solver, increment, state = self.smooth.solver, self.smooth.increment, here.state
         laws = self.smooth.laws(solver.system, state)
@@ -160,7 +160,7 @@ class SmoothLaws(Method[Trial]):
         return replace(there, state=state, unbalanced=row.residual, unsettled=unsettled, shrinks=shrinks)
 
     def ended(self, there: Trial) -> End | None:
-        """As in ``Method``."""
+        """Whether, and why, iterations end, as in ``Method``."""
         if there.singular:  # a body that nothing presses on, and rounding, which is all that is left, would move it
             met = there.error < self._tolerance and not there.unsettled
             return End.SOLVED if met else End.STALLED

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,15 +11,15 @@ from abut.linear.solver import LinearSolver, Prepared
 from abut.nonlinear.active_set import solve_step
 from abut.nonlinear.again import Again
 from abut.nonlinear.attempt import UNSTEADY, Attempt
+from abut.nonlinear.frames import Solved, in_frame_of_end
 from abut.nonlinear.iteration import Increment
 from abut.nonlinear.load_step import Task, load_step
 from abut.nonlinear.march import Begin, Control
 from abut.nonlinear.pace import Pace
 from abut.nonlinear.settings import Settings
+from abut.problem.frame import Frame
 from abut.problem.problem import ContactProblem
 from abut.solution.state import State
-
-ABSURD = 1e6  # displacement over model size that no units explain
 
 
 class SmallSteps:
@@ -36,52 +36,75 @@ class SmallSteps:
         return self._ready
 
     def prepare(self) -> None:
-        """As in ``Stepper``."""
+        """Set up what serves all iterations, as in ``Stepper``."""
         if self._ready is None:
             self._control.prepares(self._solver)
             self._ready = prepared(self._problem, self._solver, self._first, self._control.settings)
             self._control.prepared(self._solver.note(self._ready.prepared))
 
     def attempts(self, begin: Begin, pace: Pace) -> Sequence[Attempt]:
-        """As in ``Stepper``."""
+        """The step, or its parts, as in ``Stepper``."""
         assert pace.end is not None
         ready, increment = self.again(), Increment(begin.number, begin.before.largest, self._control.settings)
         task = Task(
             ready.problem, begin.before, ready.solver, increment, ready.limit, self._control.observe, ready.search
         )
-        return [self._sound(self._steady(task, pace.end, ready.prepared))]
-
-    def _steady(self, task: Task, end: float, prepared: Prepared) -> Attempt:
-        """A step, solved again until a fluid is where it has got to at its end."""
-        attempt = load_step(task, end, prepared)
-        done = attempt.iterations
-        for _ in range(self._control.settings.steps.solutions if task.frame.wet else 0):
-            frame = self._problem.settled(task.before, task.frame, attempt.state) if attempt.converged else task.frame
-            if frame is task.frame:
-                return replace(attempt, iterations=done)
-            task = replace(task, given=frame)
-            attempt = load_step(task, end, prepared)
-            done += attempt.iterations
-        if task.frame.wet:
-            return replace(attempt, iterations=done, converged=False, reason=UNSTEADY)
-        return attempt
+        solved = _Solved(task, ready.prepared, load_step(task, pace.end, ready.prepared))
+        solved = in_frame_of_end(self._problem, solved, self._control.settings.steps.solutions)
+        return [self._sound(solved.attempt)]
 
     def _sound(self, attempt: Attempt) -> Attempt:
         """An attempt, or one that has not converged: iterations of metal that flows may leave the solution so far behind
         that what is out of balance is small beside the forces that they have come to."""
         extent = float(np.ptp(self._problem.model.mesh.points, axis=0).max())
         largest = float(np.abs(self._problem.displacement(attempt.state)).max(initial=0.0))
-        if self._problem.constant or not attempt.converged or largest < ABSURD * extent:
+        most = self._control.settings.holding.absurd
+        if self._problem.constant or not attempt.converged or largest < most * extent:
             return attempt
-        reason = f"displacements of {largest:.2g} exceed {ABSURD:g} times the model size {extent:.2g}"
+        reason = f"displacements of {largest:.2g} exceed {most:g} times the model size {extent:.2g}"
         return replace(attempt, converged=False, reason=reason, balance=None)
 
     def replace(self, solver: LinearSolver) -> None:
-        """As in ``Stepper``: for all steps to come."""
+        """Go on with another linear solver, as in ``Stepper``: for all steps to come."""
         self._solver, self._ready = solver, None
 
     def end(self) -> None:
-        """As in ``Stepper``."""
+        """The step has converged, as in ``Stepper``."""
+
+
+@dataclass(frozen=True)
+class _Solved(Solved):
+    """As in ``Solved``; attempt: with the iterations in all frames."""
+
+    task: Task
+    prepared: Prepared
+    attempt: Attempt
+
+    @property
+    def before(self) -> State:
+        return self.task.before
+
+    @property
+    def frame(self) -> Frame:
+        return self.task.frame
+
+    @property
+    def end(self) -> State:
+        return self.attempt.state
+
+    @property
+    def converged(self) -> bool:
+        return self.attempt.converged
+
+    def again(self, before: State, frame: Frame, guess: State) -> _Solved:
+        """As in ``Solved``, from its beginning."""
+        task = replace(self.task, before=before, given=frame)
+        attempt = load_step(task, self.attempt.time, self.prepared)
+        attempt = replace(attempt, iterations=(*self.attempt.iterations, *attempt.iterations))
+        return replace(self, task=task, attempt=attempt)
+
+    def unsteady(self) -> _Solved:
+        return replace(self, attempt=replace(self.attempt, converged=False, reason=UNSTEADY))
 
 
 def prepared(problem: ContactProblem, solver: LinearSolver, state: State, settings: Settings) -> Again:

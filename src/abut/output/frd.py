@@ -30,9 +30,7 @@ def write(folder: Path, solution: Solution, steps: Sequence[Step], output: Outpu
     for number, cells in enumerate(mesh.bodies.values()):
         body[cells] = number
     blocks = [(block.kind, block.nodes) for block in mesh.blocks]
-    increments = (
-        Increment(step.number, step.factor * solution.model.solve.end, tuple(datasets(step, output))) for step in steps
-    )
+    increments = (Increment(step.number, step.time, tuple(datasets(step, output))) for step in steps)
     write_frd(folder / FILE, mesh.points, blocks, body, list(mesh.bodies), increments)
 
 

@@ -160,14 +160,13 @@ def _wanted(solution: Solution, step: Step, output: Output, final: bool) -> bool
 def write_index(folder: Path, solution: Solution, output: Output, final: bool = True) -> None:
     """The files that tell of all steps; ``output`` and ``final`` as in ``write_steps``."""
     shown = [step for step in solution.steps if _wanted(solution, step, output, final)]
-    end = solution.model.solve.end
     if output.bodies:
-        _write_collection(folder, "fields", shown, end, [found_name(folder, step.number) for step in shown])
+        _write_collection(folder, "fields", shown, [found_name(folder, step.number) for step in shown])
         for kind in thin.kinds(solution.model):
-            _write_collection(folder, kind, shown, end, [thin.file_of(kind, step) for step in shown])
+            _write_collection(folder, kind, shown, [thin.file_of(kind, step) for step in shown])
     files = [_contact_files(step) for step in shown]
     for index, label in enumerate(_contact_labels(solution.steps[-1]) if output.contacts else ()):
-        _write_collection(folder, label, shown, end, [names[index] for names in files])
+        _write_collection(folder, label, shown, [names[index] for names in files])
     write_text(folder / forces.FILE, forces.table(solution))
     if thin.TABLE in _files(solution, shown, output):
         write_text(folder / thin.TABLE, thin.table(solution))
@@ -188,7 +187,7 @@ def summary(solution: Solution) -> Json:
         "dofs": solution.dofs,
         "solver": solution.solver,
         "processes": solution.processes,
-        "steps": [{**_step_summary(step), "time": step.factor * solution.model.solve.end} for step in solution.steps],
+        "steps": [{**_step_summary(step), "time": step.time} for step in solution.steps],
         **modes.modes_summary(solution),
         **responses.responses_summary(solution),
         **_load_factors(solution),
@@ -375,10 +374,9 @@ def _log(solution: Solution) -> str:
     return "".join(json.dumps(line) + "\n" for line in lines)
 
 
-def _write_collection(folder: Path, stem: str, steps: Sequence[Step], end: float, files: Sequence[str]) -> None:
+def _write_collection(folder: Path, stem: str, steps: Sequence[Step], files: Sequence[str]) -> None:
     entries = "".join(
-        f'    <DataSet timestep="{step.factor * end:.12g}" part="0" file="{file}"/>\n'
-        for step, file in zip(steps, files)
+        f'    <DataSet timestep="{step.time:.12g}" part="0" file="{file}"/>\n' for step, file in zip(steps, files)
     )
     write_text(
         folder / f"{stem}.pvd",

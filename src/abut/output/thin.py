@@ -73,7 +73,7 @@ def table(solution: Solution) -> str:
     rows = csv.writer(text, lineterminator="\n")
     rows.writerow(HEAD)
     for step in solution.steps:
-        time = step.factor * solution.model.solve.end
+        time = step.time
         for body, of in forces(solution.model, step).items():
             parts = zip(of.points, of.normal_force, of.torque, of.force, of.moment)
             for at, normal, torque, force, moment in parts:
@@ -91,7 +91,7 @@ def shell_table(solution: Solution, steps: Sequence[Step]) -> str:
     rows.writerow(SHELL_HEAD)
     mesh = solution.model.mesh
     for step in steps:
-        time = f"{step.factor * solution.model.solve.end:.9g}"
+        time = f"{step.time:.9g}"
         for body in (*mesh.shells, *mid_surface.laminates(mesh)):
             of = mid_surface.of_step(mesh, step, body, solution.model.small_strains)
             every = np.column_stack([of.points, of.first, of.normal, of.membrane, of.moment, of.shear])

@@ -79,11 +79,11 @@ class DistributedBodies:
         self, contactor: Surface, target: Surface, degree: int, options: CouplingOptions, load: ContactLoad,
         normals: MovingNormals,
     ) -> CouplingTangent:  # fmt: skip
-        """As in ``Backend``; facets of the contactor are dealt out in turn."""
+        """Coupling integrals and their derivatives, as in ``Backend``; facets of the contactor are dealt out in turn."""
         return differentiate(self.team, contactor, target, degree, options, load, normals)
 
     def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
-        """As in ``abut.problem.backend.Backend``."""
+        """Nodal forces of stresses, as in ``abut.problem.backend.Backend``."""
         arguments = [(share,) for share in self.shares(displacement)]
         force = self.summed(self.team.each(part.internal, per_rank=arguments), displacement)
         return force if self.pressed is None else np.asarray(force + self.pressed @ displacement)
@@ -102,7 +102,7 @@ class DistributedBodies:
         return total.reshape(like.shape)
 
     def reduce(self, constraints: Constraints) -> Distributed:
-        """As in ``Backend``, a matrix of PETSc's."""
+        """The stiffness on the free displacements, as in ``Backend``, a matrix of PETSc's."""
         return with_pressures(self.reduced("stiffness", constraints), self.pressed, constraints)
 
     def reduced(self, tangent: str | int, constraints: Constraints, added: bool = False) -> Distributed:
@@ -136,7 +136,7 @@ class DistributedBodies:
     def stress(
         self, displacement: NDArray[np.float64], change: TemperatureChange, history: History | None = None
     ) -> PointStress:
-        """As in ``Backend``, gathered from all processes."""
+        """Stresses at integration points, as in ``Backend``, gathered from all processes."""
         answers = self.team.each(part.stresses, change.bodies, per_rank=self._moved(displacement, change, history))
         self._require_sound(answers)
         groups = self.model.deformable.groups()
@@ -158,13 +158,13 @@ class DistributedBodies:
         return place
 
     def mass(self, densities: Mapping[str, float], along: Array | None = None) -> TangentOfParts:
-        """As in ``Backend``."""
+        """The mass matrix, as in ``Backend``."""
         kept = self.team.keep()
         self.team.each(part.keep_mass, kept.number, densities, along)
         return TangentOfParts(self, kept, added=True)
 
     def stress_stiffness(self, stress: PointStress) -> TangentOfParts:
-        """As in ``Backend``."""
+        """The stiffness that stresses add, as in ``Backend``."""
         kept, shares = self.team.keep(), []
         for piece in self.pieces:
             own: list[Array] = []
@@ -186,7 +186,7 @@ class DistributedBodies:
         tangent: bool = True,
         since: Since | None = None,
     ) -> Deformed:
-        """As in ``Backend``."""
+        """Forces, tangent and histories of deformed bodies, as in ``Backend``."""
         kept = self.team.keep() if tangent else None
         answers = self.team.each(
             part.deform,
@@ -264,14 +264,14 @@ class TangentOfParts:
     added: bool = False
 
     def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
-        """As in ``Tangent``."""
+        """Forces by a change of displacements, as in ``Tangent``."""
         arguments = [(share,) for share in self.bodies.shares(displacement)]
         answers = self.bodies.team.each(part.product, self.kept.number, per_rank=arguments)
         force = self.bodies.summed(answers, displacement)
         return force if self.pressed is None else np.asarray(force + self.pressed @ displacement)
 
     def reduce(self, constraints: Constraints) -> Distributed:
-        """As in ``Tangent``, once unless it is ``added``."""
+        """The tangent on the free displacements, as in ``Tangent``, once unless it is ``added``."""
         matrix = self.bodies.reduced(self.kept.number, constraints, self.added)
         return with_pressures(matrix, self.pressed, constraints)
 

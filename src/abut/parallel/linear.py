@@ -57,7 +57,7 @@ class Iterative:
     def foresee(
         self, gap: Vector, pressure: Vector, active: NDArray[np.bool_], tied: NDArray[np.bool_]
     ) -> NDArray[np.bool_]:
-        """As in ``Prepared``."""
+        """The next active set, predicted, as in ``Prepared``."""
         return self.predict(gap, pressure, active, tied)
 
     def solve(self, rows: Rows, residual: Vector, pressure: Vector, accuracy: float) -> tuple[Vector, Vector]:
@@ -118,7 +118,7 @@ class Direct:
     def foresee(
         self, gap: Vector, pressure: Vector, active: NDArray[np.bool_], tied: NDArray[np.bool_]
     ) -> NDArray[np.bool_]:
-        """As in ``Prepared``."""
+        """The next active set, predicted, as in ``Prepared``."""
         return self.predict(gap, pressure, active, tied)
 
     def solve(self, rows: Rows, residual: Vector, pressure: Vector, accuracy: float) -> tuple[Vector, Vector]:
@@ -187,8 +187,8 @@ class PetscIterations:
         return problem
 
     def prepare(self, system: Linearised, previous: Prepared | None) -> Iterative:
-        """As in ``LinearSolver``; at large displacements multigrid stays for a load step. Raises InputError for laws or
-        Krylov methods that do not go with it."""
+        """Set up for a linearised problem, as in ``LinearSolver``; at large displacements multigrid stays for a load
+        step. Raises InputError for laws or Krylov methods that do not go with it."""
         known = previous if isinstance(previous, Iterative) else None
         if known is not None and known.system.same_matrices(system):
             return replace(known, system=system)
@@ -228,14 +228,14 @@ class PetscIterations:
         return Iterative(system, matrix, loose, pressures, predict, self.count)
 
     def note(self, prepared: Prepared) -> str:
-        """As in ``LinearSolver``."""
+        """What is told of it, as in ``LinearSolver``."""
         if not isinstance(prepared, Iterative):
             return self.name
         return f"{self.name}, {_processes(prepared.matrix.team)}"
 
     @property
     def effort(self) -> str:
-        """As in ``LinearSolver``."""
+        """What is told of its work, as in ``LinearSolver``."""
         return self.count.effort
 
 
@@ -269,7 +269,8 @@ class PetscDirect:
         return problem
 
     def prepare(self, system: Linearised, previous: Prepared | None) -> Direct:
-        """As in ``LinearSolver``. Raises InputError where PETSc has no solver for several processes."""
+        """Set up for a linearised problem, as in ``LinearSolver``. Raises InputError where PETSc has no solver for
+        several processes."""
         if isinstance(previous, Direct) and previous.system.same_matrices(system):
             return replace(previous, system=system)
         matrix: Distributed = system.stiffness
@@ -283,7 +284,7 @@ class PetscDirect:
         return Direct(system, foresight(lambda: half_spaces(interfaces(pairs)), moved))
 
     def note(self, prepared: Prepared) -> str:
-        """As in ``LinearSolver``."""
+        """What is told of it, as in ``LinearSolver``."""
         return f"PETSc's direct solver {direct_solver()}, {_processes(prepared.system.stiffness.team)}"
 
     @property

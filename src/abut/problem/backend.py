@@ -88,28 +88,28 @@ class Serial:
     matrix: Operator
 
     def couple(self, contactor: Surface, target: Surface, degree: int, options: CouplingOptions) -> Coupling:
-        """As in ``Backend``."""
+        """Coupling integrals of two surfaces, as in ``Backend``."""
         return couple(contactor, target, degree, options)
 
     def differentiate(
         self, contactor: Surface, target: Surface, degree: int, options: CouplingOptions, load: ContactLoad,
         normals: MovingNormals,
     ) -> CouplingTangent:  # fmt: skip
-        """As in ``Backend``."""
+        """Coupling integrals and their derivatives, as in ``Backend``."""
         return differentiated(contactor, target, degree, options, load, normals)
 
     def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
-        """As in ``Backend``."""
+        """Nodal forces of stresses, as in ``Backend``."""
         return np.asarray(self.matrix @ displacement)
 
     def reduce(self, constraints: Constraints) -> Operator:
-        """As in ``Backend``, CSR or ``Bordered``."""
+        """The stiffness on the free displacements, as in ``Backend``, CSR or ``Bordered``."""
         return constraints.reduced(self.matrix)
 
     def stress(
         self, displacement: NDArray[np.float64], change: TemperatureChange, history: History | None = None
     ) -> PointStress:
-        """As in ``Backend``."""
+        """Stresses at integration points, as in ``Backend``."""
         return point_stress(self.model.deformable, displacement, change, history)
 
     def deform(
@@ -120,17 +120,17 @@ class Serial:
         tangent: bool = True,
         since: Since | None = None,
     ) -> Deformed:
-        """As in ``Backend``."""
+        """Forces, tangent and histories of deformed bodies, as in ``Backend``."""
         response = respond(self.model.deformable, displacement, change, history, tangent, since)
         slope = Serial(self.model, response.tangent) if tangent else None
         return Deformed(response.force, slope, float(response.energy.sum()), response.history)
 
     def mass(self, densities: Mapping[str, float], along: Array | None = None) -> Tangent:
-        """As in ``Backend``."""
+        """The mass matrix, as in ``Backend``."""
         return MatrixTangent(mass(self.model.mesh, densities, along))
 
     def stress_stiffness(self, stress: PointStress) -> Tangent:
-        """As in ``Backend``."""
+        """The stiffness that stresses add, as in ``Backend``."""
         return MatrixTangent(stress_stiffness(self.model.deformable, stress))
 
 

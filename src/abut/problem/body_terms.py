@@ -44,11 +44,11 @@ class LinearBodies:
     constant: bool = True
 
     def evaluate(self, before: Motion, now: Motion) -> Share:
-        """As in ``Term``; the tangent is the backend."""
+        """Force, tangent and history at a state, as in ``Term``; the tangent is the backend."""
         return Share(self.backend.internal(now.displacement), self.backend)
 
     def stress(self, motion: Motion) -> PointStress:
-        """As in ``Bodies``."""
+        """Stresses at integration points, as in ``Bodies``."""
         temperature = self.loads.temperature @ weights(self.histories, motion.time)
         change = TemperatureChange(self.temperatures(motion.time), temperature)
         return self.backend.stress(motion.displacement.reshape(len(temperature), -1), change)
@@ -66,7 +66,7 @@ class SolidBodies:
     constant: bool = False
 
     def evaluate(self, before: Motion, now: Motion) -> Share:
-        """As in ``Term``."""
+        """Force, tangent and history at a state, as in ``Term``."""
         since = None if self.model.small_strains else now.since
         deformed = self.backend.deform(*self._at(now, before.history), since=since)
         symmetric = is_symmetric(self.model.deformable)
@@ -74,7 +74,7 @@ class SolidBodies:
         return Share(deformed.force, deformed.tangent, deformed.history, symmetric, energy)
 
     def stress(self, motion: Motion) -> PointStress:
-        """As in ``Bodies``: Cauchy stresses under finite strains."""
+        """Stresses at integration points, as in ``Bodies``: Cauchy stresses under finite strains."""
         return self.backend.stress(*self._at(motion, motion.history))
 
     def _at(
@@ -102,5 +102,5 @@ class DeadLoads:
     constant: bool = True
 
     def evaluate(self, before: Motion, now: Motion) -> Share:
-        """As in ``Term``."""
+        """Force, tangent and history at a state, as in ``Term``."""
         return Share(-(self.loads.forces @ weights(self.histories, now.time)))

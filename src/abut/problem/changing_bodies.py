@@ -73,8 +73,8 @@ class ChangingBodies:
         return is_symmetric(self.model.deformable)
 
     def evaluate(self, before: Motion, now: Motion) -> Share:
-        """As in ``Term``. Its history: of materials by body; of each body that goes the forces at its nodes while it is
-        there, where these are then, and where they are while it is away."""
+        """Force, tangent and history at a state, as in ``Term``. Its history: of materials by body; of each body that
+        goes the forces at its nodes while it is there, where these are then, and where they are while it is away."""
         moved = now.displacement.reshape(self.model.mesh.points.shape)
         change = heated(self.model, self.loads, now)
         found = respond(self.always, moved, change, before.history or None)
@@ -91,7 +91,7 @@ class ChangingBodies:
         )
 
     def stress(self, motion: Motion) -> PointStress:
-        """As in ``Bodies``; none in bodies that are away."""
+        """Stresses at integration points, as in ``Bodies``; none in bodies that are away."""
         moved = motion.displacement.reshape(self.model.mesh.points.shape)
         change, every = heated(self.model, self.loads, motion), self.model.deformable
         whole = [np.zeros((len(group.cells), len(group.rule[1]), 6)) for group in every.groups()]

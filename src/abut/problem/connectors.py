@@ -62,7 +62,8 @@ class Connectors:
         return cls(model, joints(model, bodies), modulus * (cell if mesh.dim == 3 else 1.0))
 
     def evaluate(self, before: Motion, now: Motion) -> Share:
-        """As in ``Term``; its history is the turn of each connector, beyond half a turn too."""
+        """Force, tangent and history at a state, as in ``Term``; its history is the turn of each connector, beyond half
+        a turn too."""
         n, multipliers = len(now.displacement), now.fields[FIELD][:, 0]
         force, sizes = np.zeros(n + len(multipliers)), np.zeros(n + len(multipliers))
         blocks, history = list[tuple[Sparse, Array, Array, Array]](), {}

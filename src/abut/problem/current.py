@@ -57,14 +57,15 @@ class Current(Kinematics):
     adjusted: Array | None = None
 
     def frame(self, known: ContactHistory, before: Placed, near: Placed | None) -> PairFrame:
-        """As in ``Kinematics``: functions and fits that belong to ``before``, theory (P9), (G15), unless those of the last
-        step serve; functions follow others by where the step ends; points for slips that are covered there only."""
+        """What is fixed of the pair during a step, as in ``Kinematics``: functions and fits that belong to ``before``,
+        theory (P9), (G15), unless those of the last step serve; functions follow others by where the step ends; points
+        for slips that are covered there only."""
         frame = PairFrame(known.past, anew(known.inner), known.following, known.fit)
         frame = self._with_following(self._with_functions(frame, before, self._inner), near or before)
         return frame if near is None else self._with_late(frame, before, near, np.ones_like(near.closed))
 
     def settled(self, frame: PairFrame, before: Placed, end: Placed) -> PairFrame:
-        """As in ``Kinematics``."""
+        """The frame that belongs to the end of a step, as in ``Kinematics``."""
         late = self._with_late(self._with_functions(frame, end, self._tried), before, end, end.closed)
         return self._with_following(late, end, settled=True)
 
@@ -131,7 +132,7 @@ class Current(Kinematics):
         return frame if past is frame.past else replace(frame, past=past)
 
     def touching(self, rest: Placed, frame: PairFrame) -> NDArray[np.bool_]:
-        """As in ``Kinematics``."""
+        """What is closed at the outset, as in ``Kinematics``."""
         pair, now = self.pair, self.at(frame, rest, rest.displacement)
         seen = ~bare(now.pair)
         if rest.away or pair.two_way:
@@ -142,7 +143,7 @@ class Current(Kinematics):
         return pair.of_functions((now.gap[pair.normal] <= TOUCHING * pair.size * weight) & seen)
 
     def at(self, frame: PairFrame, now: Placed, before: Array) -> ContactNow:
-        """As in ``Kinematics``, theory (G1), (G2)."""
+        """Gaps, slips and forces at a state, as in ``Kinematics``, theory (G1), (G2)."""
         contactor, target = self.surfaces(now.displacement)
         multipliers, options = now.multipliers, self._options(now.displacement - before)
         mixture = self._mixture(contactor, target, frame.inner)

@@ -56,7 +56,7 @@ class Discretised:
 
     @property
     def constant(self) -> bool:
-        """As in ``Problem``."""
+        """Whether the matrices never change, as in ``Problem``."""
         return self.stiffness is not None
 
     @property

@@ -32,7 +32,7 @@ class FollowerLoads:
     constant: bool = False
 
     def evaluate(self, before: Motion, now: Motion) -> Share:
-        """As in ``Term``."""
+        """Force, tangent and history at a state, as in ``Term``."""
         mesh, factors = self.model.mesh, weights(self.model.histories, now.time)
         points = mesh.points + now.displacement.reshape(mesh.points.shape)
         force, slope = np.zeros(points.size), sp.csr_matrix((points.size, points.size))
@@ -89,13 +89,13 @@ class Slopes:
     parts: Sequence[tuple[Sparse, Sparse]]
 
     def internal(self, displacement: Array) -> Array:
-        """As in ``Tangent``."""
+        """Forces by a change of displacements, as in ``Tangent``."""
         return np.asarray(
             self.own.internal(displacement) - sum(left @ (right @ displacement) for left, right in self.parts)
         )
 
     def reduce(self, constraints: Constraints) -> Sparse:
-        """As in ``Tangent``, CSR."""
+        """The tangent on the free displacements, as in ``Tangent``, CSR."""
         free, total = constraints.free, self.own.reduce(constraints)
         for left, right in self.parts:
             total = total - (free.T @ left).tocsr() @ (right @ free).tocsr()

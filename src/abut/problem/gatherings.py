@@ -32,14 +32,14 @@ class Gathering:
     finite: bool
 
     def functions(self, moved: Array) -> tuple[list[Jet], list[Jet]]:
-        """As in ``Joint``."""
+        """What the joint holds, as in ``Joint``."""
         if self.finite:
             return self._functions(moved)
         held, free = self._functions(np.zeros_like(moved))
         return [linear(jet, moved) for jet in held], [linear(jet, moved) for jet in free]
 
     def resultant(self, forces: Array, moved: Array) -> tuple[Array, Array]:
-        """As in ``Joint``: points of one set hold each other."""
+        """Force and moment that the joint carries, as in ``Joint``: points of one set hold each other."""
         return (np.zeros(2), np.zeros(1)) if self._flat else (np.zeros(3), np.zeros(3))
 
     def _functions(self, moved: Array) -> tuple[list[Jet], list[Jet]]:

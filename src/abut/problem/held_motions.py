@@ -62,7 +62,7 @@ class HeldMotions:
         return cls(model, bodies, stiffness, float(neutral.noise.max()))
 
     def evaluate(self, before: Motion, now: Motion) -> Share:
-        """As in ``Term``; history: "force", (m,) on each motion of unit size."""
+        """Force, tangent and history at a state, as in ``Term``; history: "force", (m,) on each motion of unit size."""
         rows = self.rows(before.displacement)
         force = self.stiffness * (rows @ (now.displacement - before.displacement))
         tangent = Serial(self.model, (self.stiffness * (rows.T @ rows)).tocsr())

@@ -57,7 +57,8 @@ class Holds:
         return cls([_held(model, hold) for hold in model.holds]) if model.holds else None
 
     def evaluate(self, before: Motion, now: Motion) -> Share:
-        """As in ``Term``; its history is where each hold began, and the force it had last."""
+        """Force, tangent and history at a state, as in ``Term``; its history is where each hold began, and the force it
+        had last."""
         size = len(now.displacement)
         total, slope = np.zeros(size), np.zeros(size)
         history: dict[str, Array] = {}
@@ -88,9 +89,10 @@ class Holds:
             count[part.at] += part.acts(time)
         return replace(self, given=np.where(count > 0.0, -unbalanced / np.maximum(count, 1.0), 0.0))
 
-    def require_places(self, displacement: Array, share: Share, time: float, off: float) -> None:
+    def require_places(self, displacement: Array, share: Share, time: float, off: float, end: float) -> None:
         """Raise InputError unless points, (dim n_points,) displaced, are by at most ``off`` where supports would have put
-        them that are what these holds are, or the springs of holds; share: their own at this state, with forces given."""
+        them that are what these holds are, or the springs of holds; share: their own at this state, with forces given; time:
+        a share of the ``end`` of the run."""
         for i, part in enumerate(self.parts):
             if not part.acts(time):
                 continue
@@ -100,7 +102,7 @@ class Holds:
             if far > off:
                 raise InputError(
                     f"start: hold '{part.hold.name}' puts points up to {far:.3g} from where the job before has them at time "
-                    f"{time:.6g} of this one; give it the displacement that they had there, or a later since"
+                    f"{time * end:.6g} of this one; give it the displacement that they had there, or a later since"
                 )
 
     def resistance(self, motions: Array) -> Array:

@@ -36,7 +36,7 @@ class Penetrations:
         return cls(model, wettings, [pairs[wetting.pair] for wetting in wettings])
 
     def evaluate(self, before: Motion, now: Motion) -> Share:
-        """As in ``Term``: on what is wet in the step's frame; its history is that."""
+        """Force, tangent and history at a state, as in ``Term``: on what is wet in the step's frame; its history is that."""
         mesh = self.model.mesh
         points = mesh.points + now.displacement.reshape(mesh.points.shape) if self.model.finite else mesh.points
         force, slope = np.zeros(points.size), sp.csr_matrix((points.size,) * 2)

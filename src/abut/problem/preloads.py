@@ -36,7 +36,8 @@ class LockedPreloads:
         return cls(model, locked) if locked else None
 
     def evaluate(self, before: Motion, now: Motion) -> Share:
-        """As in ``Term``; its history is the shortening of each section up to where it is locked."""
+        """Force, tangent and history at a state, as in ``Term``; its history is the shortening of each section up to
+        where it is locked."""
         size = len(now.displacement)
         total = np.zeros(size)
         parts, history = [], {}

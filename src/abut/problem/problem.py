@@ -80,14 +80,15 @@ class ContactProblem(Discretised):
     are: then all of it is linearised at every state."""
 
     def start(self) -> State:
-        """As in ``Problem``: zero displacement; multipliers that touch at the outset are closed, theory (V6)."""
+        """The state before the first load step, as in ``Problem``: zero displacement; multipliers that touch at the
+        outset are closed, theory (V6)."""
         rest = at_rest(self.n_free, int(self.operator.shape[0]))
         if self.integration is not None:
             rest = replace(rest, rates=self.integration.begins(self.model.dofs.size))
         return load_steps.started(self, rest)
 
     def frame(self, before: State, guess: State | None = None) -> Frame:
-        """As in ``Problem``."""
+        """What is fixed during a step, as in ``Problem``."""
         return fluid_frames.begun(self, load_steps.begun(self, before, guess), before)
 
     def settled(self, before: State, frame: Frame, end: State) -> Frame:
@@ -106,8 +107,9 @@ class ContactProblem(Discretised):
     def linearise(
         self, before: State, frame: Frame, now: State, since: State | None = None, guessed: bool = False
     ) -> Linearised:
-        """As in ``Problem``; since: from which an iteration, or a guess, led to ``now``, theory (D24). A
-        constant problem is affine everywhere: it is expanded about zero displacement, whose forces have no rounding."""
+        """The problem near a trial state, as in ``Problem``; since: from which an iteration, or a guess, led to ``now``,
+        theory (D24). A constant problem is affine everywhere: it is expanded about zero displacement, whose forces have
+        no rounding."""
         if self.constant:
             rest = np.zeros(self.n_free)
             before, now = replace(before, unknowns=rest), replace(now, unknowns=rest)
@@ -120,7 +122,7 @@ class ContactProblem(Discretised):
         return expanded(self, before, frame, now, there, self.values(now) - there)
 
     def accepted(self, before: State, frame: Frame, now: State, system: Linearised) -> State:
-        """As in ``Problem``."""
+        """The converged state with its history, as in ``Problem``."""
         history = before.history
         for name, share in system.shares.items():
             history = history.with_term(name, share.history)
@@ -134,20 +136,20 @@ class ContactProblem(Discretised):
     def expand(
         self, before: State, frame: Frame, state: State, laws: Laws, system: Linearised
     ) -> tuple[State, Linearised]:
-        """As in ``Problem``: nothing has been condensed."""
+        """A solution in all free displacements, as in ``Problem``: nothing has been condensed."""
         return state, system
 
     def again(self, before: State, state: State) -> Linearised:
-        """As in ``Problem``."""
+        """The problem near a converged state, as in ``Problem``."""
         frame = load_steps.ended(self, before, state)
         return self.linearise(before, fluid_frames.begun(self, frame, state), state)
 
     def restrict(self, state: State) -> State:
-        """As in ``Problem``."""
+        """A state in the unknowns of this problem, as in ``Problem``."""
         return state
 
     def with_ordinary(self, closed: NDArray[np.bool_]) -> ContactProblem:
-        """As in ``Problem``."""
+        """The problem with ordinary functions where contact is closed, as in ``Problem``."""
         wet = {item.contact for item in self.model.penetrations}  # whose fluids push as dual pressures do
         pairs = [
             pair if pair.contact.name in wet else with_plain_functions(self.model, pair, self.constraints, part)
@@ -163,7 +165,7 @@ class ContactProblem(Discretised):
         return replace(self, kinematics=kinematics, operator=stacked(pairs, self.constraints.free.shape[1]))
 
     def alone_at_edges(self, closed: NDArray[np.bool_], state: State | None = None) -> NDArray[np.bool_]:
-        """As in ``Problem``."""
+        """What is closed alone at edges where both sides end, as in ``Problem``."""
         found = np.zeros(len(closed), dtype=bool)
         for pair, own, part in zip(self.pairs, self.split(np.arange(len(closed))), self.split(closed)):
             if pair.flush is None:

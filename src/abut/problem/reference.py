@@ -21,8 +21,8 @@ class Reference(Kinematics):
     """Of a contact or a tie. pair: as from ``contact_pairs.pairs``."""
 
     def frame(self, known: ContactHistory, before: Placed, near: Placed | None) -> PairFrame:
-        """As in ``Kinematics``: tangential jumps in ``before``, and what is open moved on until it closes, theory (R3). Of a
-        tie that begins on the way the jumps where it did not act last."""
+        """What is fixed of the pair during a step, as in ``Kinematics``: tangential jumps in ``before``, and what is
+        open moved on until it closes, theory (R3). Of a tie that begins on the way the jumps where it did not act last."""
         if self.pair.tied and not self.pair.contact.times.always:
             return PairFrame(began=self.pair.rows @ before.displacement if before.away else known.began)
         if not self.pair.frictional:
@@ -32,11 +32,11 @@ class Reference(Kinematics):
         return PairFrame(slipped=gap[self.pair.tangential] + came, approached=came)
 
     def ended(self, was: ContactHistory, known: ContactHistory, before: Placed) -> PairFrame:
-        """As in ``Kinematics``."""
+        """The frame of a step that has ended, as in ``Kinematics``."""
         return self.frame(was, before, None)
 
     def at(self, frame: PairFrame, now: Placed, before: Array) -> ContactNow:
-        """As in ``Kinematics``, theory (F9)."""
+        """Gaps, slips and forces at a state, as in ``Kinematics``, theory (F9)."""
         pair = replace(self.pair, away=True) if now.away else self.pair
         gap = now.offset * pair.weight if now.away and pair.tied else self._gap(now)
         if frame.slipped is not None:
@@ -46,7 +46,7 @@ class Reference(Kinematics):
         return ContactNow(pair, gap, pair.rows, None, np.zeros(len(pair.space), dtype=bool))
 
     def touching(self, rest: Placed, frame: PairFrame) -> NDArray[np.bool_]:
-        """As in ``Kinematics``."""
+        """What is closed at the outset, as in ``Kinematics``."""
         pair = self.pair
         near = self._gap(rest) <= TOUCHING * pair.size * pair.weight
         if rest.away:

@@ -57,7 +57,7 @@ class Springs:
         return cls(model, parts, all(spring.linear for spring in model.springs))
 
     def evaluate(self, before: Motion, now: Motion) -> Share:
-        """As in ``Term``."""
+        """Force, tangent and history at a state, as in ``Term``."""
         total = np.zeros(len(now.displacement))
         for part in self.parts:
             total += part.rows.T @ part.forces(part.rows @ now.displacement)[0]

@@ -38,11 +38,11 @@ class MatrixTangent:
     matrix: Operator
 
     def internal(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
-        """As in ``Tangent``."""
+        """Forces by a change of displacements, as in ``Tangent``."""
         return np.asarray(self.matrix @ displacement)
 
     def reduce(self, constraints: Constraints) -> Operator:
-        """As in ``Tangent``."""
+        """The tangent on the free displacements, as in ``Tangent``."""
         return constraints.reduced(self.matrix)
 
 

@@ -33,7 +33,7 @@ class TurningTie(Reference):
     at_rest: Array
 
     def at(self, frame: PairFrame, now: Placed, before: Array) -> ContactNow:
-        """As in ``Kinematics``: jumps less what turns with the contactor."""
+        """Gaps, slips and forces at a state, as in ``Kinematics``: jumps less what turns with the contactor."""
         pair, found = self.pair, super().at(frame, now, before)
         normals = self.pattern.at(_moved(pair.contactor, now.displacement))
         rows = (pair.rows - self.across @ normals.turning(len(pair.contactor.points))).tocsr()

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from abut.probing.table import columns, peaks
 from abut.report.chart import Chart
 from abut.report.describe import Table
-from abut.report.times import time_at, time_label
+from abut.report.times import time_label
 from abut.solution import ProbeResult, Solution
 
 UNITS = {"displacement": "length", "stress": "force/length²", "pressure": "force/length²", "gap": "length"}
@@ -57,7 +57,7 @@ def charts(solution: Solution) -> list[Chart]:
             table = {n: v for n, v in columns(last).items() if n != "gap" or len(last.values) == 1 or _opens(v, x)}
             when = " in the last step" if len(results) > 1 else ""
         elif len(results) > 1:
-            x = time_at(solution.model, [step.factor for step in solution.steps])
+            x = np.array([step.time for step in solution.steps])
             label = time_label(solution.model)
             table, when = _over_time(results), f", {PEAK}" if len(last.points) > 1 else ""
         else:

@@ -19,7 +19,6 @@ from abut.report.inside import tetrahedra
 from abut.report.mode_shapes import SHAPE, cost, drawn, mode_shapes
 from abut.report.quantities import Extremes, contact_ranges, extremes, of_nodes, of_stress, peak_steps
 from abut.report.surface_triangles import Patch, Skin, patch, skin
-from abut.report.times import time_at
 from abut.solution import ContactResult, Solution, Step
 from abut.solution.grids import vectors
 from abut.types import Array, Json
@@ -178,7 +177,7 @@ def _fields(model: Model, step: Step, skins: list[Skin], sides: list[tuple[int, 
                 "displacement": on_grid(vectors(step.displacement[nodes])),
             }
         contacts.append(values)
-    return {"number": step.number, "time": float(time_at(model, step.factor)), "bodies": bodies, "contacts": contacts}
+    return {"number": step.number, "time": step.time, "bodies": bodies, "contacts": contacts}
 
 
 def _own(grid: Patch, values: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -26,5 +26,5 @@ def time_at(model: Model, shares: Any) -> NDArray[np.float64]:
 
 def time_axis(solution: Solution) -> Json:
     """For the page's script: times at the ends of the steps, and what the axis says."""
-    times = time_at(solution.model, [step.factor for step in solution.steps])
-    return {"time": times.tolist(), "label": time_label(solution.model)}
+    times = [step.time for step in solution.steps]
+    return {"time": times, "label": time_label(solution.model)}

@@ -84,8 +84,8 @@ class Flips:
 
 @dataclass(frozen=True)
 class Step:
-    """The state at the end of a load step. ``factor`` in (0, 1] is the time: the share of loads and
-    displacements applied, where no amplitude says otherwise.
+    """The state at the end of a load step, at ``time``; ``factor`` in (0, 1] is its share of the end of the run: that of
+    loads and displacements applied, where no amplitude says otherwise.
 
     displacement: (n_points, dim); stress: (n_points, 6) recovered at the points, xx yy zz xy yz zx;
     reaction: (dim,) resultant of all supports, equations and prescribed motions of rigid bodies; reactions: the same for
@@ -134,6 +134,12 @@ class Step:
     penetrations: Mapping[str, PenetrationResult] = field(default_factory=dict)
     connectors: Mapping[str, ConnectorResult] = field(default_factory=dict)
     nodal_reaction: NDArray[np.float64] | None = None  # (n_points, dim) of supports and links
+    run_end: float = 1.0  # time at which the run ends
+
+    @property
+    def time(self) -> float:
+        """At which the step ends, as the job, or ``SolveOptions.end``, counts it."""
+        return self.factor * self.run_end
 
     @property
     def joined(self) -> bool:
@@ -148,7 +154,7 @@ class Step:
             float(np.abs(values).max(initial=0.0)) for values in (self.displacement, von_mises(self.stress))
         )
         lines = [
-            f"Step {self.number} at time {self.factor:.6g}: {state} in {len(self.iterations)} iterations",
+            f"Step {self.number} at time {self.time:.6g}: {state} in {len(self.iterations)} iterations",
             f"  largest displacement {far:.6g}, largest von Mises stress {largest:.6g}",
             f"  loads {vector(self.load)}, reactions {vector(self.reaction)}",
         ]
@@ -347,7 +353,7 @@ class Solution:
             *self._locking,
             *idle_contacts(self.model, [s.contacts for s in self.steps]),
             *self._apart,
-            *run_checks([(step.factor, step.landed, step.energy) for step in self.steps]),
+            *run_checks([(step.time, step.landed, step.energy) for step in self.steps]),
             *(check for result in self.modes for check in result.certificate),
             *(check for result in self.responses for check in result.certificate),
         )
