@@ -10,10 +10,9 @@ import numpy as np
 from abut.errors import InputError
 from abut.model.conditions import weights
 from abut.nonlinear.attempt import Attempt
-from abut.nonlinear.settings import NOTHING
 from abut.problem.balance import Balance
 from abut.problem.holds import Holds
-from abut.problem.linearised import Linearised
+from abut.problem.linearised import NOTHING, Linearised
 from abut.problem.preloads import LockedPreloads
 from abut.problem.problem import ContactProblem
 from abut.problem.released import Released
