@@ -26,11 +26,13 @@ BESIDE = 2  # facets from a side, to which what is not continued reaches
 @dataclass(frozen=True)
 class Shown:
     """A pressure that was recovered on a contactor, or on one with the facets beyond the sides of a sector, whose first
-    facets and points are its own. nodal: (n_facets, 9), average: (n_points,), as of ``Recovery``, its own."""
+    facets and points are its own. nodal: (n_facets, 9), average: (n_points,), as of ``Recovery``, its own;
+    loaded: (n_functions,) how much of the area of each of the pair's functions is."""
 
     recovery: Recovery
     more: Extended | None
     own: Surface
+    loaded: NDArray[np.float64]
 
     @property
     def fits(self) -> bool:

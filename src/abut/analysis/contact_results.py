@@ -144,10 +144,10 @@ def contact_result(
     covered = coupling.segments > 0
     at = averages(pair.contactor, coupling, state.exact) if pair.contact.method == METHODS[0] else None
     raw = facet_node_values(pair.contactor, degree, state.normal)
-    shown = None if at is None else reported(state, at)
+    loaded = state.loaded(at)
+    shown = None if at is None else reported(state, at, loaded)
     nodal = raw if shown is None else shown.nodal
     share = np.where(np.isnan(raw), np.nan, 1.0) if at is None else at_facet_nodes(at.surface, at.share)
-    loaded = state.loaded(at)
     statistics, amount = _statistics(
         mesh, state, at, nodal, share, loaded, NOTHING * max(around.reference, around.beside)
     )
@@ -188,7 +188,7 @@ def contact_result(
         friction=None
         if shown is None
         else friction_result(
-            pair, shown, state.multipliers, state.status, state.slips, state.limit, loaded, before, around.reference
+            pair, shown, state.multipliers, state.status, state.slips, state.limit, before, around.reference
         ),
     )
     return _on_second(result) if pair.contact.turned else result
@@ -283,14 +283,14 @@ def _statistics(
     )
 
 
-def reported(state: PairState, at: Averages) -> Shown:
+def reported(state: PairState, at: Averages, loaded: NDArray[np.float64]) -> Shown:
     """The pressure at points and at the facets' nodes, with what is beyond the sides of a sector."""
     beyond = Beyond.of(state.pair)
     if beyond is None:
-        return Shown(_recovered(state, at), None, at.surface)
+        return Shown(_recovered(state, at), None, at.surface, loaded)
     field = facet_wise(beyond.more, state.normal if state.mended is None else state.mended)
     every = averages(beyond.pair.contactor, beyond.pair.coupling, at.exact[beyond.more.source])
-    return Shown(_recovered(replace(state, pair=beyond.pair, mended=field), every), beyond.more, beyond.own)
+    return Shown(_recovered(replace(state, pair=beyond.pair, mended=field), every), beyond.more, beyond.own, loaded)
 
 
 def _recovered(state: PairState, at: Averages) -> Recovery:

@@ -38,12 +38,11 @@ def friction_result(
     status: NDArray[np.int8],
     slips: Vector,
     limit: FrictionBound | None,
-    loaded: Vector,
     earlier: FrictionResult | None = None,
     reference: float = 0.0,
 ) -> FrictionResult | None:
     """recovery: of the pair's pressure. multipliers, status: (n,) of the pair; slips: (n, 4), as in the history; limit:
-    at the end of the step; loaded: (n_functions,) how much of their areas is; earlier: of the step before, None in the
+    at the end of the step; earlier: of the step before, None in the
     first; reference: the largest pressure of the steps before; None without friction."""
     if limit is None:
         return None
@@ -62,8 +61,8 @@ def friction_result(
         slip=_at_nodes(pair, slip),
         total_slip=_at_nodes(pair, pair.tangential_traction(slips[:, 1])),
         status=_status_at_nodes(pair, states),
-        sticking_area=float((weight * loaded)[states == CLOSED].sum()),
-        slipping_area=float((weight * loaded)[states == SLIPPING].sum()),
+        sticking_area=float(weight[states == CLOSED] @ recovery.loaded[states == CLOSED]),
+        slipping_area=float(weight[states == SLIPPING] @ recovery.loaded[states == SLIPPING]),
         work=work,
         total_work=work + (0.0 if earlier is None else earlier.total_work),
         work_per_area=each,

@@ -44,13 +44,13 @@ def loaded_shares(at: Averages, pressure: Array) -> Array:
 def loaded_parts(pair: Pair, at: Averages | None, pressure: Array, active: NDArray[np.bool_], shown: Array) -> Array:
     """How much of int H_k of each of the pair's functions is loaded, (n_functions,). pressure, active: (n_functions,) the
     multipliers and whether they are in contact; shown: (9 n_facets,) facet-wise coefficients of the pressure that results
-    show; at: None where they are not averages: all or nothing then, as for functions that belong to a facet alone."""
+    show; at: None where they are not averages: all or nothing then, as for functions at no corner."""
     whole = (active & (pressure > LOADED * pressure.max(initial=0.0))).astype(float)
     if at is None:
         return whole
     owner, n = split_at_creases(pair.contactor)[1], len(pair.contactor.points)
     share = loaded_shares(at, at.of(shown))
     area, loaded = (np.bincount(owner, values, minlength=n) for values in (at.weight, at.weight * share))
-    of_points = np.divide(loaded, area, out=np.zeros(n), where=area > 0.0)
-    node = pair.space.node
-    return np.where(node >= 0, of_points[np.maximum(node, 0)], whole)
+    of_points = np.divide(loaded, area, out=np.full(n, np.nan), where=area > 0.0)
+    found = of_points[np.maximum(pair.space.node, 0)]
+    return np.where((pair.space.node >= 0) & ~np.isnan(found), found, whole)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -150,14 +151,11 @@ def step_result(
         axisymmetric=model.mesh.axisymmetric,
         cycling=_cycling(balance, end.cycling),
         flips=_flips(balance, attempt),
-        rigid={body.name: _rigid(end, body, by_supports) for body in constraints.bodies},
         earlier=max((step.largest_force for step in before), default=0.0),
         internal=float(np.abs(end.internal).sum()),
         pressed=max(pushes, default=0.0),
         strain=max((pair.compliance * c.max_pressure / 4.0 for pair, c in zip(balance.pairs, contacts)), default=0.0),
         rounding=_rounding(balance, state.unknowns),
-        spring=held_force(problem.springs, state),
-        neutral=problem.springs.noise,
         strained=strained,
         grown=not strained and grows(solids, change, balance, end.displacement),
         landed=_landed(state),
@@ -166,12 +164,9 @@ def step_result(
         stress_error=wrong,
         volume_change=volume_change(solids, end.nodal, own, change) if shown is None and strained else None,
         remembered={**remembered(solids, end.motion.history, before), **node_fields(problem, end.motion, state)},
-        penetrations=penetration_results(problem, state, end.displacement),
         flow=end.flow,
-        preloads=_preloads(end),
-        springs=_springs(end),
-        connectors=connector_results(problem, state),
         nodal_reaction=end.reaction.reshape(-1, model.dim),
+        **_joints(end),
     )
     return step, acting
 
@@ -255,6 +250,20 @@ def _landed(state: State) -> tuple[float, float] | None:
 
 def _largest_size(steps: Sequence[Step]) -> float:
     return max((step.energy.size for step in steps if step.energy is not None), default=0.0)
+
+
+def _joints(end: _End) -> dict[str, Any]:
+    """What joins, moves and holds bodies beside contacts and supports, by the names that a step has for it."""
+    problem, state, by_supports = end.problem, end.state, end.by_supports
+    return {
+        "rigid": {body.name: _rigid(end, body, by_supports) for body in problem.constraints.bodies},
+        "preloads": _preloads(end),
+        "springs": _springs(end),
+        "connectors": connector_results(problem, state),
+        "penetrations": penetration_results(problem, state, end.displacement),
+        "spring": held_force(problem.springs, state),
+        "neutral": problem.springs.noise,
+    }
 
 
 def _rigid(end: _End, body: RigidBody, forces: NDArray[np.float64]) -> RigidResult:
