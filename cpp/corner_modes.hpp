@@ -46,6 +46,60 @@ public:
   // Stress by the dilatation at the centre, times the weight.
   Stress &by_centre(std::size_t q) { return at_points[point[q]].stress; }
 
+  // Slopes of values (n, dim) at nodes, at each point: of component a along reference coordinate b at [a][b].
+  void set_slopes(const double *values) {
+    double at_corners[CORNERS][dim], by_mode[CORNERS][dim];
+    for (int m = 0; m < CORNERS; ++m)
+      std::copy_n(values + node[m] * dim, dim, at_corners[m]);
+    by_signs<dim, true>(at_corners[0], IN_ORDER, by_mode[0]);
+    each<0, dim>([&](auto b) { // a mode of coordinate b has the slope of the one without it, alike on both sides
+      constexpr int own = 1 << b;
+      double x[CORNERS][dim];
+      each<0, CORNERS>([&](auto m) {
+        if constexpr (!(m & own))
+          for (int a = 0; a < dim; ++a)
+            x[m][a] = factors[m | own] * by_mode[m | own][a];
+      });
+      each<0, dim>([&](auto axis) {
+        each<0, CORNERS>([&](auto low) {
+          constexpr int bit = 1 << axis, high = low | bit;
+          if constexpr (axis != b && !(low & own) && !(low & bit))
+            for (int a = 0; a < dim; ++a) {
+              const double without = x[low][a], with = x[high][a];
+              x[low][a] = without - with, x[high][a] = without + with;
+            }
+        });
+      });
+      each<0, CORNERS>([&](auto m) {
+        for (int a = 0; a < dim; ++a)
+          slopes[m][a][b] = x[m & ~own][a];
+      });
+    });
+  }
+  const Stress &slope(std::size_t q) const { return slopes[point[q]]; }
+
+  // Forces (n, dim) of a stress at each point, times its weight: component a across reference coordinate b at [b][a].
+  Stress &pushing(std::size_t q) { return pushes[point[q]]; }
+  void add_forces(double *force) const {
+    Stress by_mode[CORNERS];
+    double of_mode[CORNERS][dim], at_corners[CORNERS][dim];
+    by_signs<SIZE, true>(pushes[0][0], IN_ORDER, by_mode[0][0]);
+    each<1, CORNERS>([&](auto m) {
+      for (int a = 0; a < dim; ++a) {
+        double sum = 0;
+        each<0, dim>([&](auto b) {
+          if constexpr (m >> b & 1)
+            sum += by_mode[m ^ 1 << b][b][a];
+        });
+        of_mode[m][a] = factors[m] * sum;
+      }
+    });
+    by_signs<dim, false>(of_mode[0], node, at_corners[0]);
+    for (int k = 0; k < CORNERS; ++k)
+      for (int a = 0; a < dim; ++a)
+        force[k * dim + a] += at_corners[k][a];
+  }
+
   // Writes the stiffness (n, n, dim, dim). symmetric: of symmetric moduli. centre: null, or the change of the
   // dilatation at the centre (n, dim) by displacements.
   void write(bool symmetric, const double *centre, double *block) {
@@ -159,6 +213,7 @@ private:
   double away;             // of the points from the centre, along each coordinate
   double factors[CORNERS]; // slope of a mode at the points, over that of its values at the corners
   int node[CORNERS], corner[CORNERS], point[CORNERS];                    // by corner; by node; by point
+  Stress slopes[CORNERS], pushes[CORNERS];                               // by corner
   Sums at_points[CORNERS], sums[CORNERS];                                // by corner; by mode
   double modes[CORNERS][CORNERS][SIZE], by_node[CORNERS][CORNERS][SIZE]; // by modes; by mode and node
 };

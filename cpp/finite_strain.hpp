@@ -6,6 +6,7 @@
 #include "kinematics.hpp"
 #include "last_node.hpp"
 #include "reference_moduli.hpp"
+#include "wide.hpp"
 #include <cmath>
 
 namespace abut {
@@ -27,7 +28,15 @@ public:
 
   // Moves to the cell with nodes at x (n, dim).
   void place(const double *x) {
+    if (modes)
+      modes->set_slopes(x);
     for (std::size_t q = 0; q < cells.rule; ++q) {
+      if (modes) {
+        const Jacobian<dim> jacobian = jacobian_of<dim>(modes->slope(q));
+        jacobian.invert(points[q].reference);
+        volume[q] = jacobian.det * cells.weights[q];
+        continue;
+      }
       const double *derivatives = cells.derivatives + q * n * dim;
       volume[q] = gradients<dim>(x, n, derivatives, &gradient[q * n * dim], points[q].reference) * cells.weights[q];
       if constexpr (axisymmetric)
@@ -54,8 +63,13 @@ public:
       for (std::size_t i = 0; i < n; ++i)
         push(centre, &centre_gradient[i * dim], axisymmetric ? centre_hoop[i] : 0, &centre_pushed[i * dim]);
     }
+    if (modes)
+      modes->set_slopes(u);
     for (std::size_t q = 0; q < cells.rule; ++q) {
-      displacement_slope(u, &gradient[q * n * dim], axisymmetric ? &hoop[q * n] : nullptr, slope);
+      if (modes)
+        by_position(modes->slope(q), points[q].reference, slope);
+      else
+        displacement_slope(u, &gradient[q * n * dim], axisymmetric ? &hoop[q * n] : nullptr, slope);
       points[q].set(slope);
       determinant = points[q].det;
       if (!(determinant > 0) || !std::isfinite(determinant))
@@ -95,10 +109,23 @@ public:
   }
 
   // Adds the forces (n, dim) of a stress at point q: products of the first stress of Piola and Kirchhoff with the
-  // gradients of shape functions.
-  void add_force(std::size_t q, const double *stress, double *force) const {
+  // gradients of shape functions; by modes with ``complete_force`` once all points are in.
+  void add_force(std::size_t q, const double *stress, double *force) {
     const double w = volume[q] * power(q);
     const auto &f = points[q].f;
+    if (modes) {
+      double inward[dim][dim];
+      to_reference(points[q], w, stress, inward);
+      auto &pushing = modes->pushing(q);
+      for (int b = 0; b < dim; ++b)
+        for (int a = 0; a < dim; ++a) {
+          double sum = inward[b][0] * f[a][0];
+          for (int p = 1; p < dim; ++p)
+            sum += inward[b][p] * f[a][p];
+          pushing[b][a] = sum;
+        }
+      return;
+    }
     double first[dim][dim] = {{0}};
     for (int a = 0; a < dim; ++a)
       for (int b = 0; b < dim; ++b)
@@ -112,6 +139,11 @@ public:
       if constexpr (axisymmetric)
         force[i * dim] += w * f[2][2] * stress[2] * hoop[q * n + i];
     }
+  }
+
+  void complete_force(double *force) const {
+    if (modes)
+      modes->add_forces(force);
   }
 
   // Whether the stiffness is where the tangent is.
@@ -148,7 +180,7 @@ public:
   void complete(bool symmetric, double *block) {
     const bool half = symmetric && this->symmetric();
     if (modes)
-      modes->write(half, cells.mean_dilatation ? centre_pushed.data() : nullptr, block);
+      write_stiffness(*modes, half, cells.mean_dilatation ? centre_pushed.data() : nullptr, block);
     else
       complete_from<dim>(added(), n, half, block);
   }
@@ -221,6 +253,15 @@ protected:
     }
   }
 
+  // Slopes along positions of those along reference coordinates.
+  static void by_position(const double (&along)[dim][dim], const double (&reference)[dim][dim], double (&slope)[3][3]) {
+    std::fill_n(&slope[0][0], 9, 0.0);
+    for (int a = 0; a < dim; ++a)
+      for (int b = 0; b < dim; ++b)
+        for (int p = 0; p < dim; ++p)
+          slope[a][b] += along[a][p] * reference[p][b];
+  }
+
   // Change of ln det F by displacements of a node.
   static void push(const Deformed &at, const double *g, double hoop, double *result) {
     for (int a = 0; a < dim; ++a) {
@@ -271,7 +312,7 @@ protected:
     const ReferenceLines<dim> lines(at.f, at.reference, tangent.axes);
     auto &moduli = modes->moduli(q);
     double inward[dim][dim];
-    lines.template moduli<upper>(tangent.c, factor, &moduli[0][0][0][0]);
+    write_moduli(lines, upper, tangent.c, factor, &moduli[0][0][0][0]);
     to_reference(at, w, stress, inward);
     add_turn<dim, upper>(at, inward, moduli);
     if (!cells.mean_dilatation)

@@ -201,6 +201,7 @@ private:
     std::fill(force.begin(), force.end(), 0.0);
     for (std::size_t q = 0; q < cells.rule; ++q)
       kinematics.add_force(q, &stress[q * STRAINS], force.data());
+    kinematics.complete_force(force.data());
     for (std::size_t i = 0; i < n; ++i)
       for (int a = 0; rows.has(own[i]) && a < dim; ++a)
         results.force[std::size_t(own[i]) * dim + a] += force[i * dim + a];

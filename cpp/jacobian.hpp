@@ -37,10 +37,8 @@ template <int dim> struct Jacobian {
   }
 };
 
-// Of a cell with nodes at x (n, dim).
-template <int dim> Jacobian<dim> jacobian(const double *x, std::size_t n, const double *d) {
-  double j[dim][dim];
-  reference_slope<dim>(x, n, d, j);
+// Of slopes of the position along reference coordinates, component a along b at [a][b].
+template <int dim> Jacobian<dim> jacobian_of(const double (&j)[dim][dim]) {
   if constexpr (dim == 2)
     return {{{j[1][1], -j[0][1]}, {-j[1][0], j[0][0]}}, j[0][0] * j[1][1] - j[0][1] * j[1][0]};
   else {
@@ -54,6 +52,13 @@ template <int dim> Jacobian<dim> jacobian(const double *x, std::size_t n, const 
     result.det = j[0][0] * c[0][0] + j[0][1] * c[1][0] + j[0][2] * c[2][0];
     return result;
   }
+}
+
+// Of a cell with nodes at x (n, dim).
+template <int dim> Jacobian<dim> jacobian(const double *x, std::size_t n, const double *d) {
+  double j[dim][dim];
+  reference_slope<dim>(x, n, d, j);
+  return jacobian_of<dim>(j);
 }
 
 // Gradients (n, dim) of the shape functions, and the inverse of the Jacobian; returns the determinant.

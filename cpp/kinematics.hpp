@@ -106,6 +106,8 @@ public:
     }
   }
 
+  void complete_force(double *) const {} // as of finite strains
+
   // Adds the stiffness (n, n, dim, dim) of any tangent at point q, of the nodes that ``complete`` does not add;
   // symmetric: it is, and only nodes i <= k are added up.
   void add_stiffness(std::size_t q, const double *c, bool symmetric, double *block) {

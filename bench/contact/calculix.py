@@ -77,7 +77,7 @@ def deck(case: abut.Model, kind: str) -> Iterator[str]:
         yield f"{contact.friction!r}, {STICK * case.solids[0].material.young!r}"
     yield f"*CONTACT PAIR, INTERACTION=TOUCH, TYPE={TYPES[kind]}"
     yield "SLAVE, MASTER"
-    yield "*STEP, NLGEOM" if case.finite else "*STEP"
+    yield "*STEP, NLGEOM" if case.kinematics == "finite" else "*STEP"
     yields = any(isinstance(solid.material, abut.Plastic) for solid in case.solids)
     yield "*STATIC, DIRECT" if yields else "*STATIC"
     steps = case.solve.steps

@@ -54,4 +54,4 @@ def test_core(source: Path, name: str, programs: dict[Path, Path]) -> None:
 
 def test_each_program_has_tests() -> None:
     assert {source for source, _ in NAMES} == set(PROGRAMS)
-    assert {source.stem for source in PROGRAMS} == {"clipping", "duals", "projection", "shape_functions"}
+    assert {source.stem for source in PROGRAMS} == {"clipping", "duals", "modes", "projection", "shape_functions"}
