@@ -15,9 +15,11 @@ if TYPE_CHECKING:
     from abut.materials.elastic import LinearElastic
     from abut.materials.hyperelastic import NeoHooke
     from abut.materials.logarithmic import Hencky
+    from abut.materials.mfront import MFront
     from abut.materials.plastic import Plastic
     from abut.materials.rubber import ArrudaBoyce, MooneyRivlin, Ogden, Yeoh
     from abut.materials.temperature import OverTemperature
+    from abut.materials.viscoelastic import Viscoelastic
     from abut.mesh.from_meshio import from_meshio
     from abut.mesh.mesh import Mesh
     from abut.model import (
@@ -80,7 +82,8 @@ _HOME = {  # of public names that do not come from abut.model
     "Hencky": "abut.materials.logarithmic", "Plastic": "abut.materials.plastic",
     **dict.fromkeys(("Anisotropic", "Orthotropic"), "abut.materials.anisotropic"),
     **dict.fromkeys(("ArrudaBoyce", "MooneyRivlin", "Ogden", "Yeoh"), "abut.materials.rubber"),
-    "OverTemperature": "abut.materials.temperature",
+    "OverTemperature": "abut.materials.temperature", "Viscoelastic": "abut.materials.viscoelastic",
+    "MFront": "abut.materials.mfront",
     "from_meshio": "abut.mesh.from_meshio", "PressureOverclosure": "abut.contact.overclosure", "check": "abut.diagnosis",
     **dict.fromkeys(("Beam", "MidForce", "MidSupport", "Shell", "Thick"), "abut.thin.records"),
     "thicken": "abut.thin.thicken",
@@ -96,12 +99,12 @@ __all__ = [
     "AbutError", "Amplitude", "Anisotropic", "ArrudaBoyce", "Axes", "Beam", "BeamForces", "BodyForce", "Buckling",
     "Centrifugal", "Connector", "Contact", "ConvergenceError", "Coupling", "Equation", "Force", "FoundContact",
     "Frequencies", "Gravity", "Harmonic", "Hencky", "Hold", "InputError", "Integration", "LinearElastic", "LoadFactor",
-    "Mesh", "MidForce", "MidSupport",
+    "MFront", "Mesh", "MidForce", "MidSupport",
     "MidSurface", "Model", "Moment", "MooneyRivlin", "NeoHooke", "NodalForce", "Ogden", "Orthotropic", "Output",
     "OverTemperature", "Penetration", "Plastic", "Preload", "Pressure", "PressureOverclosure", "Probe", "Removal",
     "ResultField", "Rigid", "Rotation", "Sector", "Sectors", "Shell", "SingularModelError", "Solid", "Solution",
     "SolveOptions", "Spring", "Stop", "Stopped", "Support", "Temperature", "Term", "Thick", "Traction", "Transient",
-    "Yeoh",
+    "Viscoelastic", "Yeoh",
     "add_sectors", "add_stops", "add_surfaces", "beam_forces", "check", "find_contacts", "from_meshio", "load_factors",
     "mid_surface", "plot", "result_field", "solve", "thicken", "to_pyvista", "write", "write_report",
 ]  # fmt: skip

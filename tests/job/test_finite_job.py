@@ -106,7 +106,7 @@ def test_written_and_read_again(path: Path, tmp_path: Path) -> None:
             "rubber.kind: expected one of 'linear-elastic', 'orthotropic', 'anisotropic', 'over-temperature', 'neo-hooke', "
             "'hencky', 'plastic', "
             "'mooney-rivlin', 'yeoh', "
-            "'ogden', 'arruda-boyce', got 'neohooke'",
+            "'ogden', 'arruda-boyce', 'viscoelastic', 'mfront', got 'neohooke'",
         ),
         ('kind = "neo-hooke"', "", "materials.rubber.kind: missing"),
         ("lame = 2.0", "lam = 2.0", "materials.rubber.lam: unknown key; did you mean 'lame'"),

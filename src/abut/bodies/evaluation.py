@@ -68,14 +68,15 @@ def evaluate(
 
 
 def places(solids: Solids, group: Group, rule: Rule, temperature: TemperatureChange) -> Places:
-    """Where the points of a rule are, and how much warmer. Mixed cells see of the temperature what their pressures do."""
+    """Where the points of a rule are, how much warmer, and the time since their history. Mixed cells see of the temperature
+    what their pressures do."""
     shapes, _ = shape_functions(CELLS[group.kind].code, np.ascontiguousarray(rule[0]))
     points = (shapes @ solids.points[group.nodes]).reshape(-1, solids.points.shape[1])
     degrees = temperature.degrees(solids, group)
     if degrees is None:
-        return Places(points, np.zeros(len(points)))
+        return Places(points, np.zeros(len(points)), temperature.elapsed)
     unmoved = strains(group.arrays(solids, rule), np.zeros(solids.points.shape), degrees)  # less one by degree
-    return Places(points, -unmoved[:, 0])
+    return Places(points, -unmoved[:, 0], temperature.elapsed)
 
 
 def _asked(told: Evaluate, where: str, strain: Array, history: Array) -> Evaluated:

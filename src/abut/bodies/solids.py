@@ -187,10 +187,12 @@ class Group:
 @dataclass(frozen=True)
 class TemperatureChange:
     """Degrees: uniform by body (0 for those not named), and at the nodes (n_points,), which the shape functions interpolate,
-    but count with their mean in cells of first order, theory (F10); both add up."""
+    but count with their mean in cells of first order, theory (F10); both add up. elapsed: time since the history, as in
+    ``Places``."""
 
     bodies: Mapping[str, float] = field(default_factory=dict)
     nodes: Array | None = None
+    elapsed: float = 0.0
 
     def strain(self, solids: Solids, group: Group) -> Array | None:
         """Thermal strain of a group's cells at their nodes, (cells, n_nodes), alike in all directions; None where there is

@@ -14,13 +14,12 @@ from abut.expression import Expression, Expressions
 from abut.io.atomic import write_text
 from abut.job.load import Job
 from abut.job.load_tables import LOADS
-from abut.job.material_tables import MATERIALS
+from abut.job.material_tables import MADE_OF, MATERIALS
 from abut.job.parameters import field_names
 from abut.job.result_fields import tables_of
 from abut.job.schema import JobFile
 from abut.job.times import with_shares, with_times
 from abut.materials.material import Material
-from abut.materials.temperature import OverTemperature
 from abut.mesh.write import write_mesh
 from abut.model import (
     Amplitude,
@@ -77,8 +76,9 @@ def job_table(model: Model, mesh: str, output: Output = EVERYTHING, folder: Path
         del table["model"]
     table["materials"] = {n: material_table(m) for m, n in materials.items()}
     for material, name in materials.items():
-        if _parts(material):
-            table["materials"][name]["materials"] = [materials[part] for part in _parts(material)]
+        if key := MADE_OF.get(type(material)):
+            made_of = [materials[part] for part in _parts(material)]
+            table["materials"][name][key] = made_of if key == "materials" else made_of[0]
     table["solids"] = [_plain(solid) | {"material": materials[solid.material]} for solid in model.solids]
     for name in (
         "supports",
@@ -125,7 +125,9 @@ def material_table(material: Material) -> Json:
 
 def _parts(material: Material) -> Sequence[Material]:
     """Materials that one is made of."""
-    return material.materials if isinstance(material, OverTemperature) else ()
+    key = MADE_OF.get(type(material))
+    made_of = () if key is None else getattr(material, key)
+    return tuple(made_of) if isinstance(made_of, Sequence) else (made_of,)
 
 
 def _of_modes(wanted: Wanted) -> Json:

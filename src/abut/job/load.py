@@ -17,6 +17,7 @@ from abut.job.acting import acting, parts
 from abut.job.contacts import Resolved, resolve_contacts
 from abut.job.load_tables import LOADS
 from abut.job.material_tables import MATERIALS
+from abut.job.materials import materials_of
 from abut.job.other_names import key_called, kind_said
 from abut.job.parameters import field_names, parameters, worked_out
 from abut.job.result_fields import Named, read_fields, told, with_fields
@@ -25,8 +26,6 @@ from abut.job.start import Start
 from abut.job.thin import with_thin
 from abut.job.times import with_shares
 from abut.job.values import values
-from abut.materials.material import Material
-from abut.materials.temperature import OverTemperature
 from abut.mesh import make
 from abut.mesh.check import check_mesh
 from abut.mesh.mesh import Mesh
@@ -168,7 +167,7 @@ def _deck(path: Path, refine: int, ignore: Collection[str], soft: bool) -> Job:
 
 
 def _model(file: JobFile, folder: Path, refine: int, named: Named) -> tuple[Model, Resolved]:
-    materials = _materials(file.materials)
+    materials = materials_of(file.materials, folder)
     thin = with_thin(file, folder, _mesh(file.mesh, folder, refine))
     solids = []
     for i, s in enumerate(file.solids):
@@ -243,27 +242,6 @@ def _equation(table: EquationTable, where: str) -> Equation:
         return Equation(**{**values(table, where), "terms": terms})
     except InputError as error:
         raise InputError(str(error) if str(error).startswith(where) else f"{where}: {error}") from None
-
-
-def _materials(tables: Mapping[str, Any]) -> dict[str, Material]:
-    """By name; those made of others come after these."""
-    made = {n: _material(n, table, {}) for n, table in tables.items() if MATERIALS[table.kind] is not OverTemperature}
-    return {name: made.get(name) or _material(name, table, made) for name, table in tables.items()}
-
-
-def _material(name: str, table: Any, others: Mapping[str, Material]) -> Material:
-    given = values(table, f"materials.{name}")
-    if MATERIALS[table.kind] is OverTemperature:
-        for i, other in enumerate(table.materials):
-            if other not in others:
-                where = f"materials.{name}.materials[{i}]"
-                raise InputError(f"{where}: no other material named {other!r}{nearest(other, others)}")
-        given["materials"] = tuple(others[other] for other in table.materials)
-    try:
-        made: Material = MATERIALS[given.pop("kind")](**given)
-        return made
-    except InputError as error:
-        raise InputError(f"materials.{name}.{error}") from None
 
 
 def _load(table: BaseModel, where: str, named: Named) -> Load:

@@ -12,10 +12,13 @@ from abut.materials.material import Material
 
 @dataclass(frozen=True)
 class Places:
-    """Where n points of a body are, undeformed, and how much warmer they became. points: (n, dim); change: (n,) degrees."""
+    """Where n points of a body are, undeformed, and how much warmer they became. points: (n, dim); change: (n,) degrees;
+    elapsed: time since the history that the material is given, of the run, which materials with rates look at; 0 where
+    nothing moves on."""
 
     points: Array
     change: Array
+    elapsed: float = 0.0
 
 
 @runtime_checkable

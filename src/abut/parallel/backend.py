@@ -193,7 +193,11 @@ class DistributedBodies:
             None if kept is None else kept.number,
             change.bodies,
             per_rank=[
-                (*moved, None if since is None else replace(since, displacement=since.displacement[piece.points]))
+                (
+                    *moved,
+                    None if since is None else replace(since, displacement=since.displacement[piece.points]),
+                    change.elapsed,
+                )
                 for moved, piece in zip(self._moved(displacement, change, history), self.pieces)
             ],
         )

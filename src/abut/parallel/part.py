@@ -74,10 +74,11 @@ def deform(
     displacement: NDArray[np.float64],
     nodal: NDArray[np.float64],
     history: History,
-    since: Since | None = None,
+    since: Since | None,
+    elapsed: float,
 ) -> tuple[NDArray[np.float64], float, History] | InsideOut:
-    """Nodal forces (dim n_points,), elastic energy and new history of this part; since: as in ``respond``; its tangent is
-    kept under ``number``, None for none."""
+    """Nodal forces (dim n_points,), elastic energy and new history of this part; since: as in ``respond``, elapsed: as
+    in ``TemperatureChange``; its tangent is kept under ``number``, None for none."""
     part: Solids = store["part"]
     n = part.mesh.points.size
     if not part.mesh.n_cells:
@@ -85,7 +86,7 @@ def deform(
             store[number] = sp.csr_matrix((n, n))
         return np.zeros(n), 0.0, {}
     try:
-        change = TemperatureChange(temperatures, nodal)
+        change = TemperatureChange(temperatures, nodal, elapsed)
         response = respond(part, displacement, change, history, number is not None, since)
     except Inverted as error:
         return InsideOut(error.cell, error.body, error.determinant)

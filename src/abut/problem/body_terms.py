@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -68,7 +68,9 @@ class SolidBodies:
     def evaluate(self, before: Motion, now: Motion) -> Share:
         """Force, tangent and history at a state, as in ``Term``."""
         since = None if self.model.small_strains else now.since
-        deformed = self.backend.deform(*self._at(now, before.history), since=since)
+        moved, change, history = self._at(now, before.history)
+        change = lasting(self.model, change, before, now)
+        deformed = self.backend.deform(moved, change, history, since=since)
         symmetric = is_symmetric(self.model.deformable)
         energy = None if self.model.small_strains else deformed.energy
         return Share(deformed.force, deformed.tangent, deformed.history, symmetric, energy)
@@ -90,6 +92,11 @@ def heated(model: Model, loads: Loads, motion: Motion) -> TemperatureChange:
     if TEMPERATURE in motion.fields:
         temperature = temperature + motion.fields[TEMPERATURE][:, 0]
     return TemperatureChange(model.temperatures(motion.time), temperature)
+
+
+def lasting(model: Model, change: TemperatureChange, before: Motion, now: Motion) -> TemperatureChange:
+    """The same with the time from ``before``, whose history materials are given, to ``now``."""
+    return replace(change, elapsed=(now.time - before.time) * model.solve.end)
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from abut.bodies.solids import Solids, TemperatureChange
 from abut.bodies.stress import PointStress, point_stress
 from abut.materials.material import linear
 from abut.model import Model, Removal
-from abut.problem.body_terms import heated
+from abut.problem.body_terms import heated, lasting
 from abut.problem.loads import Loads
 from abut.problem.terms import MatrixTangent, Motion, Share
 from abut.types import Array, Sparse
@@ -76,7 +76,7 @@ class ChangingBodies:
         """Force, tangent and history at a state, as in ``Term``. Its history: of materials by body; of each body that
         goes the forces at its nodes while it is there, where these are then, and where they are while it is away."""
         moved = now.displacement.reshape(self.model.mesh.points.shape)
-        change = heated(self.model, self.loads, now)
+        change = lasting(self.model, heated(self.model, self.loads, now), before, now)
         found = respond(self.always, moved, change, before.history or None)
         force, tangent, history = found.force, found.tangent, dict(found.history)
         for part in self.parts:
@@ -138,7 +138,7 @@ class ChangingBodies:
         solids = part.solids
         if solids.kinematics == "finite":
             solids = replace(solids, mesh=replace(solids.mesh, points=solids.mesh.points + origin))
-        return solids, moved - origin, TemperatureChange(degrees, nodes), history
+        return solids, moved - origin, TemperatureChange(degrees, nodes, change.elapsed), history
 
     def _away(
         self, part: Passing, removal: Removal, before: Mapping[str, Array], now: Motion
