@@ -133,3 +133,20 @@ def test_continuous_pressures_are_added_once() -> None:
         assert mine.tangent is not None
         assert theirs.tangent is not None
         close(mine.tangent.internal(v), theirs.tangent.internal(v))
+
+
+def test_bodies_that_relax_add_up() -> None:
+    """Every process knows the time since the history."""
+    mesh = join({"a": box(cells=(2, 3, 2), cell="hex8")})
+    law = abut.Viscoelastic(abut.Hencky(10.0, 0.3), [(0.5, 0.2, 2.0)])
+    held = [abut.Support("a.bottom", x=0.0, y=0.0, z=0.0)]
+    relaxing = abut.Model(mesh, [abut.Solid("a", law)], held, kinematics="finite")
+    whole, parts = serial(relaxing), dealt(relaxing, 3)
+    u, _ = moved(relaxing)
+    late = TemperatureChange(elapsed=3.0)
+    one, other = whole.deform(u, late), parts.deform(u, late)
+    close(one.force, other.force)
+    assert np.abs(one.force - whole.deform(u, TemperatureChange()).force).max() > 0.1 * np.abs(one.force).max()
+    again, also = whole.deform(u, late, one.history), parts.deform(u, late, other.history)
+    close(again.force, also.force)
+    close(one.history["a"], other.history["a"])

@@ -53,6 +53,9 @@ def _onset(shape: str, poisson: float, ratio: float) -> Benchmark:
 
 
 BENCHMARKS = (
-    *(_onset("ball", *pair) for pair in ((0.0, 1.2993), (0.25, 1.5543), (0.3, 1.6128), (0.33, 1.6492), (0.4, 1.7385))),
+    *(
+        _onset("ball", *pair)
+        for pair in ((0.0, 1.2993), (0.25, 1.5543), (0.3, 1.6128), (0.33, 1.6492), (0.4, 1.7385), (0.499, 1.8758))
+    ),
     *(_onset("cylinder", *pair) for pair in ((0.25, 1.7250), (0.3, 1.7937), (0.4, 1.8895))),
 )

@@ -74,8 +74,8 @@ def deform(
     displacement: NDArray[np.float64],
     nodal: NDArray[np.float64],
     history: History,
-    since: Since | None,
-    elapsed: float,
+    since: Since | None = None,
+    elapsed: float = 0.0,
 ) -> tuple[NDArray[np.float64], float, History] | InsideOut:
     """Nodal forces (dim n_points,), elastic energy and new history of this part; since: as in ``respond``, elapsed: as
     in ``TemperatureChange``; its tangent is kept under ``number``, None for none."""
