@@ -180,8 +180,8 @@ def _swinging(level: int) -> Model:
 
 
 LEVER = _turn_of_the_lever()
-INERTIA = DENSITY * LENGTH * (LENGTH**2 / 3.0 + 1.0 / 12.0)
-SWINGS = float(np.sqrt((SPRING + WEIGHT * LENGTH * np.sin(LEVER)) / INERTIA) / (2.0 * np.pi))
+HEAVY = DENSITY * LENGTH * (LENGTH**2 / 3.0 + 1.0 / 12.0)  # of the lever, about the hinge
+SWINGS = float(np.sqrt((SPRING + WEIGHT * LENGTH * np.sin(LEVER)) / HEAVY) / (2.0 * np.pi))
 SLENDER = "shear of beams 20 times as long as high"
 BENCHMARKS = (
     Benchmark(
