@@ -335,3 +335,12 @@ def test_refused(keys: dict[str, Any], said: str) -> None:
 def test_refused_by_the_model(keys: dict[str, Any], said: str) -> None:
     with pytest.raises(InputError, match=said):
         lever(Joint(**{"name": "h", "kind": "hinge", "on": "lever", **keys}))
+
+
+def test_a_mechanism_that_nothing_drives_stays() -> None:
+    """At large displacements, where forces are rounding alone; a small moment turns it as it should."""
+    joint = Joint("h", "hinge", "lever", at=(0, 0), stiffness=4.0)
+    step = solved(lever(joint, **FINITE))
+    assert np.abs(step.displacement).max() < 1e-12
+    step = solved(lever(replace(joint, load=4e-6), **FINITE))
+    assert step.connectors["h"].motion["turn"] == pytest.approx(1e-6, rel=1e-6)

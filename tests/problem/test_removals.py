@@ -52,6 +52,25 @@ def test_a_post_that_goes_leaves_its_load_to_the_other_and_comes_back_where_it_w
     assert failed == []
 
 
+def test_both_passes_of_a_contact_open():
+    """Node-to-segment contact both ways under a beam that deforms, whose top is led down: both passes are closed nowhere
+    while the post is away. The beam, as long as a post is high over 4, is 1000 times as stiff."""
+    given = _posts([abut.Removal("right", until=0.25)], method="node-to-segment-two-pass")
+    down = abut.Support("beam.top", x=0, y=-0.06, amplitude=STEADY)
+    solids = [*given.solids, abut.Solid("beam", abut.LinearElastic(1000.0 * YOUNG, 0.0))]
+    solution = abut.solve(replace(given, solids=solids, supports=[*given.supports, down], rigid=(), loads=()))
+    assert solution.converged
+    forces = [[abs(float(c.force[1])) for c in step.contacts] for step in solution.steps]
+    names = [contact.name for contact in solution.contacts]
+    assert names == ["left", "left (second pass)", "right", "right (second pass)"]
+    pressed = 0.06 * STIFFNESS
+    assert sum(forces[0][2:]) == pytest.approx(pressed, rel=1e-2)
+    for step, of in zip(solution.steps[1:], forces[1:]):
+        assert sum(of[:2]) == pytest.approx(pressed, rel=1e-2)
+        assert [contact.area for contact in step.contacts[2:]] == [0.0, 0.0]
+        assert of[2:] == pytest.approx([0.0, 0.0], abs=1e-9)
+
+
 def test_forces_of_what_goes_fade():
     solution = abut.solve(BENCHMARKS["half-returns"].model(0))
     assert all(check.passed for check in solution.certificate)

@@ -65,9 +65,7 @@ def check_modes(model: Model, team: bool) -> None:
             _check_open(model, wanted)
             _check_turning(model, wanted)
     if model.connectors:
-        raise InputError(
-            "modes: frequencies and buckling loads of assemblies with connectors are not known; leave one out"
-        )
+        _check_joined(model, team)
     if model.physics:
         raise InputError("modes: frequencies and buckling loads are those of displacements alone; leave physics out")
     if model.finite and any(isinstance(wanted, Buckling) for wanted in model.modes):
@@ -75,6 +73,23 @@ def check_modes(model: Model, team: bool) -> None:
             f'buckling: linear buckling is about bodies at small displacements, and kinematics is "{model.kinematics}"; '
             "with it the load steps themselves lead to the load at which the assembly gives way"
         )
+
+
+def _check_joined(model: Model, team: bool) -> None:
+    """Raise InputError for what cannot be found of assemblies with connectors."""
+    if team:
+        raise InputError(
+            "frequencies: of assemblies with connectors on one process without PETSc (solve.linear); start one"
+        )
+    for wanted in model.modes:
+        if isinstance(wanted, Buckling):
+            raise InputError(
+                "buckling: joints let bodies turn, which linear buckling takes for small; leave connectors out, or let load "
+                'steps with kinematics "finite" lead to the load at which the mechanism gives way'
+            )
+        if isinstance(wanted, Frequencies) and (wanted.complex or wanted.coriolis or any(wanted.diameters)):
+            what = "complex" if wanted.complex else "coriolis" if wanted.coriolis else "diameters"
+            raise InputError(f"frequencies: {what}: not known of assemblies with connectors; leave one of both out")
 
 
 def _check_turning(model: Model, wanted: Frequencies) -> None:
@@ -148,7 +163,7 @@ class Reached:
     @classmethod
     def _of(cls, assembled: Assembled, own: ContactProblem, before: State, state: State, by: Eigensolver) -> Reached:
         problem, system = assembled.problem, own.again(before, state)
-        near = problem.constraints.near(state.unknowns, system.factors)
+        near = problem.constraints.near(state.unknowns, system.factors).moving
         stressed = _stressed(assembled, state) if problem.model.small_strains else None
         return cls(own, before, state, system, near, stressed, assembled.backend, by)
 

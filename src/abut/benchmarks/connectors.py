@@ -12,7 +12,7 @@ from abut.benchmarks.record import Benchmark, Reference
 from abut.materials.elastic import LinearElastic
 from abut.mesh.make import box, join, rectangle
 from abut.mesh.mesh import Mesh
-from abut.model import Connector, Coupling, Force, Model, Rigid, Solid, SolveOptions, Support
+from abut.model import Connector, Coupling, Force, Frequencies, Model, Rigid, Solid, SolveOptions, Support
 from abut.solution import Solution
 from abut.types import Array
 
@@ -20,6 +20,7 @@ YOUNG = 1000.0
 LENGTH, WEIGHT, SPRING = 10.0, 12.0, 100.0  # of the lever
 CRANK, ROD, PUSH, ANGLE = 3.0, 10.0, 5.0, 2.0
 BEND, TURN = 0.5, 1.2  # between the shafts; of the driving one
+DENSITY = 2e-3  # of the lever
 LIMIT = 0.1  # of the hinge between two beams
 RIGID = "rigid bodies: conditions are met to 1e-9 of their lengths"
 HALF = 20.0  # length of each beam, of the height 1
@@ -167,7 +168,20 @@ def _of_beams(solution: Solution) -> dict[str, float]:
     }
 
 
+def _swinging(level: int) -> Model:
+    """The lever with a mass of its own, as it hangs on its spring under a dead force."""
+    model = _lever(level)
+    return replace(
+        model,
+        solids=[Solid("block", LinearElastic(YOUNG, 0.3, density=DENSITY))],
+        rigid=[replace(body, density=DENSITY) for body in model.rigid],
+        modes=[Frequencies(1)],
+    )
+
+
 LEVER = _turn_of_the_lever()
+HEAVY = DENSITY * LENGTH * (LENGTH**2 / 3.0 + 1.0 / 12.0)  # of the lever, about the hinge
+SWINGS = float(np.sqrt((SPRING + WEIGHT * LENGTH * np.sin(LEVER)) / HEAVY) / (2.0 * np.pi))
 SLENDER = "shear of beams 20 times as long as high"
 BENCHMARKS = (
     Benchmark(
@@ -177,6 +191,11 @@ BENCHMARKS = (
             "force of the hinge": Reference(WEIGHT, 1e-8, "the weight", RIGID),
             "way of the weight": Reference(-LENGTH * np.sin(LEVER), 1e-8, "L sin t", RIGID),
         },
+    ),
+    Benchmark(
+        "swinging-lever", "its frequency there, with a mass of its own", _swinging,
+        lambda solution: {"frequency": float(solution.modes[0].values[0])},
+        {"frequency": Reference(SWINGS, 1e-7, "((k + W L sin t) / J)^(1/2) / 2 pi", RIGID)},
     ),
     Benchmark(
         "slider-crank", "crank, rod, and an eye that slides against a force", lambda level: slider_crank(), _of_crank,

@@ -15,13 +15,13 @@ from abut.contact.sides import words
 from abut.diagnosis.common_ends import presses_at_common_end
 from abut.diagnosis.contactor import swap
 from abut.model import LAWS, METHODS, Contact
+from abut.model.contact import SECOND
 from abut.model.locking import locking
 from abut.solution import Check, ContactResult, Solution
 from abut.solution.flow import GO_ON
 from abut.solution.modes import BUCKLING, FREQUENCIES
 from abut.solution.stress_error import ContactStressError
 
-SECOND = " (second pass)"
 EITHER = Choice(1, "alike", False)  # whatever else speaks for the present contactor
 OF_NARROW = {"overlap", "oscillation", "largest pressure"}  # lines that the mesh does not mend at a sharp edge
 UNSETTLED = {"complementarity", "friction cone", "slip direction", "sticking", "friction work"}

@@ -12,6 +12,7 @@ from abut.model.conditions import Amplitude, History
 from abut.model.contact_times import ContactTimes
 from abut.model.given_friction import ROUGH, Friction, checked
 
+SECOND = " (second pass)"  # what the name of a two-pass contact the other way round ends with
 KINDS = ("contact", "tied", "bilateral")
 TWO_WAY = KINDS[1:]  # which carry tension as they carry pressure
 PRESSURES = ("auto", "P0", "P1", "P1-discontinuous", "P2", "P2-discontinuous", "dual", "dual-P1")

@@ -16,7 +16,7 @@ from abut.materials.temperature import OverTemperature
 from abut.mesh.mesh import Mesh
 from abut.model.body_forces import BodyForce, Centrifugal, Gravity, Load
 from abut.model.conditions import Amplitude, History
-from abut.model.contact import Contact
+from abut.model.contact import SECOND, Contact
 from abut.model.hold import END
 from abut.model.loads import Force, NodalForce, Pressure, Traction
 from abut.model.penetration import Penetration
@@ -222,8 +222,8 @@ def _gated(load: Any, bodies: set[str], removals: Sequence[Removal]) -> Load:
 def opened(
     mesh: Mesh, contacts: Sequence[Contact], removals: Sequence[Removal], penetrations: Sequence[Penetration]
 ) -> dict[str, Away]:
-    """Of each contact that acts for a part of the time, or (ties stay) whose bodies go: when it is open. Raises InputError
-    for sides of several bodies, and for fluids in such contacts."""
+    """Of each contact (and its second pass) that acts for a part of the time, or (ties stay) whose bodies go: when it is
+    open. Raises InputError for sides of several bodies, and for fluids in such contacts."""
     result: dict[str, Away] = {}
     passing = {removal.body for removal in removals}
     for i, contact in enumerate(contacts):
@@ -236,5 +236,5 @@ def opened(
                 f"contacts[{i}]: '{contact.name}', which a fluid enters, or a body of it, goes; leave one of both out"
             )
         if own:
-            result[contact.name] = Away(RAMP, own)
+            result[contact.name] = result[contact.name + SECOND] = Away(RAMP, own)
     return result

@@ -42,8 +42,9 @@ class Eigensolver(Protocol):
 @dataclass(frozen=True)
 class Held:
     """stiffness: (n_free, n_free) symmetric, of bodies and real springs, CSR or on many processes; rows: (m, n_free) of the
-    gaps and slips that are held; give: (m,) what these give way by per multiplier, positive; loose: whether bodies move as a
-    whole without resistance; kept: (m,) which of the problem's multipliers these are; by: what finds modes."""
+    gaps and slips that are held, and of what connectors hold; give: (m,) what these give way by per multiplier, positive;
+    loose: whether bodies move as a whole without resistance; kept: which of the problem's multipliers the first rows are;
+    by: what finds modes."""
 
     stiffness: Operator
     rows: Sparse
@@ -58,6 +59,7 @@ def held(
 ) -> Held:
     """Of a problem near a converged state, theory (J2). Closed contact is held along its normals, sticking in all
     directions, ties in all; what slips is free along its surface; contact with a law of its own gives way as that says.
+    Connectors hold what they take, and motions that are prescribed or stopped at a limit.
     apart: contacts of which nothing is held."""
     own = problem.springs
     artificial = sp.csr_matrix((own.stiffness, (own.columns, own.columns)), shape=system.stiffness.shape)
@@ -76,8 +78,22 @@ def held(
         kept.append(here)
         give.append(np.maximum(soft, HARD * pair.scale)[here])
     places = np.flatnonzero(np.concatenate(kept))
-    rows = sp.csr_matrix(system.operator)[places]
-    return Held(stiffness, rows, np.concatenate(give), len(own) > 0 or _is_loose(rows, system.motions), places, by)
+    rows, motions = sp.csr_matrix(system.operator)[places], system.motions
+    if problem.constraints.others is not None:
+        count = stiffness.shape[0] - problem.constraints.others.free.nnz
+        joined = _joined(stiffness, count)
+        rows, stiffness = sp.vstack([rows[:, :count], joined], format="csr"), stiffness[:count, :count]
+        give.append(HARD * np.asarray(abs(joined).max(axis=1).todense()).ravel())
+        motions = motions[:count]
+    return Held(stiffness, rows, np.concatenate(give), len(own) > 0 or _is_loose(rows, motions), places, by)
+
+
+def _joined(tangent: Sparse, count: int) -> Sparse:
+    """(m, count) rows of what connectors hold, from a tangent whose first ``count`` unknowns move; the others are their
+    multipliers, of which those of open limits have a diagonal of their own."""
+    tangent = tangent.tocsr()
+    closed = tangent.diagonal()[count:] == 0.0
+    return tangent[count:, :count][closed]
 
 
 def _status(pair: Pair, closed: NDArray[np.bool_], slipping: NDArray[np.bool_]) -> NDArray[np.bool_]:

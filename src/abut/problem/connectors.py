@@ -25,6 +25,10 @@ from abut.types import Array, Sparse
 ROUND, QUARTER = 2.0 * np.pi, 0.5 * np.pi
 REACHED = 1e-6  # of the joint's size: nearer to a limit it is there
 STOPS = ("stop", "stop2")  # what limits of the first and the second free motion are
+ROUNDED = (
+    2.0**-52 / 1e-9
+)  # of a joint's size: to what conditions are known, over the share of forces that Newton's method
+# leaves; what moves a joint by less than that share of it cannot be told from no force
 NEW = 1e-8  # of a row's own size: what earlier ones leave of it, from which on it says something new
 
 
@@ -80,7 +84,8 @@ class Connectors:
             slopes = [(0.0 if c.open else self.unit) * c.jet.slope for c in conditions]
             couples = np.reshape(slopes, (len(slopes), rows.shape[0]))
             blocks.append((rows, at.bend, couples, np.array([-self.unit if c.open else 0.0 for c in conditions])))
-        sizes[:n] = force[:n]
+        rounded = ROUNDED * self.unit * max(joint.size for joint in self.joints)
+        sizes[:n] = np.maximum(np.abs(force[:n]), rounded)
         return Share(force, MatrixTangent(_tangent(blocks, n)), history, sizes=sizes)
 
     def _each(self) -> Iterator[tuple[int, AnyJoint, slice]]:

@@ -50,6 +50,14 @@ class Constraints:
     turns: Turns | None = None
     others: OtherFields | None = None
 
+    @property
+    def moving(self) -> Constraints:
+        """Those of displacements alone."""
+        if self.others is None:
+            return self
+        free = self.free[:, : self.free.shape[1] - self.others.free.nnz]
+        return replace(self, free=free, others=None)  # turns are in the columns already, as from ``near``
+
     def with_others(self, others: OtherFields | None) -> Constraints:
         """With fields beside displacements."""
         if others is None:

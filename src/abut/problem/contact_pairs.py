@@ -28,6 +28,7 @@ from abut.contact.symmetry_planes import STRAIGHT, Planes, planes
 from abut.contact.tangential import SlipOperators, slip_operators
 from abut.mesh.surface import Surface
 from abut.model import METHODS, Contact, Model
+from abut.model.contact import SECOND
 from abut.model.friction import friction_values
 from abut.model.offset import offsets
 from abut.model.symmetry import held_directions
@@ -63,9 +64,7 @@ def pairs(model: Model, constraints: Constraints, couple: Couple = couple) -> li
         sides = model.sides(contact)
         result.append(pair(model, contact, constraints, couple, sides))
         if contact.method == "node-to-segment-two-pass":
-            back = replace(
-                contact, contactor=contact.target, target=contact.contactor, name=f"{contact.name} (second pass)"
-            )
+            back = replace(contact, contactor=contact.target, target=contact.contactor, name=contact.name + SECOND)
             result.append(pair(model, back, constraints, couple, (sides[1], sides[0])))
     if len(result) > 1 or any(each.contactor.parts is not None for each in result):
         place = one_place(model.mesh.points, glue(model))

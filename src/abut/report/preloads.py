@@ -12,13 +12,11 @@ from abut.solution.load_factor import load_factors
 
 HEAD = ["preload", "step", "tension", "shear", "bending moment", "shortening", "state"]
 FACTOR_HEAD = ["preload", "load factor", "change of tension", "change of loads along it", "why there is none"]
-MOST = 200  # rows
 
 
 def preload_rows(solution: Solution) -> list[list[str]]:
-    """One for each preload and step, of the last steps where they are many."""
-    rows = list(_rows(solution))
-    return rows[-MOST:]
+    """One for each preload and step."""
+    return list(_rows(solution))
 
 
 def factor_rows(solution: Solution) -> list[list[str]]:

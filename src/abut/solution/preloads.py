@@ -39,18 +39,21 @@ class PreloadResult:
         return abs(self.tension - self.prescribed) / max(abs(self.prescribed), abs(self.tension), 1e-300)
 
 
-def preload_checks(results: Mapping[str, PreloadResult]) -> list[Check]:
-    """None without preloads."""
-    if not results:
+def preload_checks(steps: Sequence[Mapping[str, PreloadResult]]) -> list[Check]:
+    """Over the steps, with what every bolt carries; none without preloads."""
+    names = list(steps[0]) if steps else []
+    if not names:
         return []
-    worst = max(results, key=lambda name: results[name].error)
-    loose = [name for name, result in results.items() if result.tension < 0.0]
-    said = f": {', '.join(map(repr, loose))}" if loose else ""
+    error, worst = max((step[name].error, name) for step in steps for name in names)
+    tensions = {name: [step[name].tension for step in steps] for name in names}
+    loose = ", ".join(repr(name) for name, values in tensions.items() if min(values) < 0.0)
+    ranges = ", ".join(f"{name!r} {min(values):.6g} to {max(values):.6g}" for name, values in tensions.items())
     return [
-        Check("", "preload", results[worst].error, REACHED,
+        Check("", "preload", error, REACHED,
               f"what is missing of a tension, or of a shortening that is locked, over it, at most, in {worst!r}"),
         Check("", "loose bolts", float(bool(loose)), LOOSE,
-              f"1 where the section of a preload carries compression, which a bolt does not{said}"),
+              "1 where the section of a preload carries compression, which a bolt does not"
+              f"{': ' * bool(loose)}{loose}; tensions over the steps: {ranges}"),
     ]  # fmt: skip
 
 

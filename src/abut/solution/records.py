@@ -342,7 +342,6 @@ class Solution:
                                    step.stress_error.meaning(loaded),
                                    pressure=float(np.sqrt(step.stress_error.energy)), highest=True,
                                    notice=STRESS_NOTICED))  # fmt: skip
-            model += preload_checks(step.preloads)
             weak = [step.springs[spring.name] for spring in self.model.springs if spring.weak]
             model += weak_checks(weak, step.reference_force)
             for check in (*model, *(c for contact in step.contacts for c in contact.checks)):
@@ -350,6 +349,7 @@ class Solution:
         checks = [worst(checks) for checks in lines.values()]
         return (
             *checks,
+            *preload_checks([step.preloads for step in self.steps]),
             *self._locking,
             *idle_contacts(self.model, [s.contacts for s in self.steps]),
             *self._apart,
