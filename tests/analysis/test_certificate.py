@@ -360,8 +360,8 @@ def test_model_balance_and_the_worst_step() -> None:
 
 def test_written_and_printed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """`abut run` ends with one line for each check; summary.json has value, limit and verdict of each. The edges of the
-    upper block are sharp, where no mesh shows the largest pressure and stresses have no limit, and so coarse cells are 4 % too
-    stiff: warnings, with what to do."""
+    upper block are sharp, where no mesh shows the largest pressure and stresses have no limit, and so coarse cells are 4 %
+    too stiff: warnings, with what to do."""
     assert main(["run", str(EXAMPLES / "two-blocks" / "job.toml"), "--output", str(tmp_path / "out")]) == 0
     lines = capsys.readouterr().out.splitlines()
     written = json.loads((tmp_path / "out" / "summary.json").read_text())["certificate"]
