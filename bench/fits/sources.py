@@ -54,7 +54,8 @@ class Fit:
         return abut.Model(
             join(self.parts), [abut.Solid(part, m) for part, m in zip(self.parts, self.materials)],
             [abut.Support(f"{part}.{side}", normal=0) for part in self.parts for side in self.held],
-            contacts=[abut.Contact(f"{outer}.inner", f"{inner}.outer", offset=-interference)], plane=self.plane,
+            contacts=[abut.Contact(contactor=f"{inner}.outer", target=f"{outer}.inner", offset=-interference)],
+            plane=self.plane,
         )  # fmt: skip
 
 

@@ -1,4 +1,5 @@
-"""Hertz's line: a coarse cylinder is the target under a finer block, with facets as they are and for the smooth surface.
+"""Hertz's line: a coarse cylinder is the target under a finer block, with facets as they are and for the smooth surface, and
+the side that abut takes is the contactor.
 
 python bench/pressure/coarse_target.py [RATIO]: of Young's moduli, cylinder over block, 3 by default (steel on aluminium).
 """
@@ -24,6 +25,8 @@ def main() -> None:
             for geometry in ("faceted", "curved"):
                 one = replace(model, contacts=[replace(model.contacts[0], geometry=geometry)])
                 found.append(f"{geometry} {100.0 * case.error(abut.solve(one)):.1f} %")
+            own = case.model()
+            found.append(f"{own.contacts[0].contactor} as contactor {100.0 * case.error(abut.solve(own)):.1f} %")
             print(f"{cell} {sizes} largest error {', '.join(found)}", flush=True)
 
 

@@ -74,17 +74,20 @@ PUNCH = {"quad": 0.1, "tri": 0.15}
 LINES = ((8, 8), (8, 12), (12, 8), (8, 16), (16, 8), (8, 40), (40, 8))
 PARTS = {
     "line": Part("line", _alike(*FLAT), _every(RATIOS, *LINES), HERTZ),
+    "line-near": Part("line", _alike(*FLAT), _every((1.5, 3.0), *LINES[1:]), HERTZ),
     "line-mixed": Part("line", MIXED, _corners(8, 24), HERTZ),
     "column": Part("column", _alike(*FLAT), _corners(10, 50), HERTZ),
     "rings": Part("rings", _alike(*FLAT), _every(RATIOS, (8, 8), (8, 12), (12, 8), (8, 24), (24, 8)), LAME),
     "punch": Part("punch", _alike(*FLAT), _every((1e4,), (10, 10), (10, 20), (20, 10), (10, 50), (50, 10)), PUNCH),
     "ball": Part("ball", _alike(*SOLID), _corners(8, 12), HERTZ),
+    "ball-near": Part("ball", _alike("hex8", "tet4"), _every((1.5, 3.0), (8, 16)), HERTZ),
     "ball-fine": Part("ball", _alike(*SOLID), _diagonal(8, 40), HERTZ),
     "ball-2": Part("ball", _alike(*SOLID_2), _diagonal(8, 16), HERTZ),
     "ball-mixed": Part("ball", MIXED_SOLID, _diagonal(8, 12), HERTZ),
     "column-3d": Part("column", _alike(*SOLID, *SOLID_2), _diagonal(10, 14), HERTZ),
 }
 LONG = (
+    "ball-near",
     "ball-fine",
     "ball-2",
     "ball-mixed",

@@ -43,8 +43,10 @@ BOTH = abut.Contact("upper.bottom", "lower.top")
         ((8, 8), 1.0, "upper.bottom", "first of two alike"),
         ((8, 16), 1.0, "upper.bottom", "coarser, facets of 0.5 against 0.25"),
         ((16, 8), 1.0, "lower.top", "coarser, facets of 0.5 against 0.25"),
-        ((8, 16), 0.5, "lower.top", "softer, E/(1-nu^2) 549 against 1.1e+03"),
-        ((16, 8), 2.0, "upper.bottom", "softer"),
+        ((8, 16), 0.25, "lower.top", "softer, E/(1-nu^2) 275 against 1.1e+03"),
+        ((16, 8), 4.0, "upper.bottom", "softer"),
+        ((8, 16), 0.5, "upper.bottom", "coarser, facets of 0.5 against 0.25"),
+        ((16, 8), 2.0, "lower.top", "coarser"),
         ((8, 16), 1.05, "upper.bottom", "coarser"),
     ],
 )

@@ -109,7 +109,11 @@ SIDE = Side(modulus=1.0, size=1.0, covered=1.0)
         ({"size": 1.05, "covered": 0.8}, {}, 1, "covered"),
         ({"size": 1.5, "covered": 0.8}, {}, 0, "coarser"),
         ({"size": 1.0 / 40.0}, {}, 1, "coarser"),
-        ({"size": 1.0 / 40.0}, {"modulus": 1.2}, 0, "softer"),
+        ({"size": 1.0 / 40.0}, {"modulus": 1.2}, 1, "coarser"),  # the softer one, but finer by far
+        ({"size": 1.0 / 40.0}, {"modulus": 3.0}, 1, "coarser"),
+        ({"size": 1.0 / 40.0}, {"modulus": 4.0}, 0, "softer"),
+        ({"size": 1.0 / 40.0}, {"modulus": 1.2, "covered": 0.5}, 0, "softer"),
+        ({"size": 0.8}, {"modulus": 1.2}, 0, "softer"),
     ],
 )
 def test_rule(change: dict[str, float], other: dict[str, float], chosen: int, rule: str) -> None:

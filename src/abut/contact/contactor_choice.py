@@ -4,7 +4,8 @@ what the user has named.
 1. A rigid side never, nor one whose points supports hold: the pressure needs the displacements of its own side. Nor one
    with a facet that has no normal somewhere: pressure is integrated along the contactor's normals.
 2. The softer side, which takes the shape of the other one: a stiff contactor that is finer than its target touches the
-   target's corners one by one (``abut.benchmarks.contrast``).
+   target's corners one by one (``abut.benchmarks.contrast``). Unless it is finer by half and softer by three times at most:
+   what a target gives way, in facets that the contactor sees, is its share of what both sides do, a quarter then.
 3. But not a side that is mostly bare while the other is covered: its pressure would stand on facets of which a small part
    only lies opposite anything.
 4. Before these, at small displacements, unless one is softer by far, the side of which a sharp edge presses on a face of the
@@ -26,11 +27,12 @@ from numpy.typing import NDArray
 ALIKE = 1.1  # ratio of moduli up to which neither side is the softer one
 BARE = 0.55  # share of a side's facets that lies opposite: with less a pressure stands on facets that are mostly bare
 BARER = 0.1  # difference of such shares that is worth a choice
+FINEST = 1.5  # ratio of facet sizes from which on they outweigh softness, up to STIFFER
 FINER = 1.25  # ratio of facet sizes from which on one side counts as finer than the other
 LEANS = 0.01  # sine between the sides at an edge: about what a facet gives way at strains of metals, over its size
 MARGIN = 1.1  # by which shares must pass their limits for the choice to be clear: they are measured
 SAME_SIZE = 1e-3  # relative difference of sizes that is none
-STIFFER = 3.0  # ratio of moduli from which on a contactor that is a little finer may show the facets of its target
+STIFFER = 3.0  # ratio of moduli from which on one side is softer by far
 TWICE = 2.0  # ratio of facet sizes that is worth a word
 CLOSE = 0.05  # of the sum of two facets' sizes: gaps within that of the smallest one lie where contact begins
 NEAR = 0.5  # of the sum of two facets' sizes: the distance within which they face each other
@@ -111,7 +113,8 @@ def choose(one: Side, other: Side) -> Choice:
     presses = [number for number in (0, 1) if sides[number].edge and not sides[1 - number].edge]
     if presses and stiff <= STIFFER * sides[soft].modulus:
         return Choice(presses[0], "edge", True)
-    if stiff > ALIKE * sides[soft].modulus and not _bare(sides[soft], sides[1 - soft]):
+    by_far = stiff > ALIKE * sides[soft].modulus and not _outweighed(sides[soft], sides[1 - soft])
+    if by_far and not _bare(sides[soft], sides[1 - soft]):
         return Choice(soft, "softer", True)
     for number in (0, 1):
         if _bare(sides[1 - number], sides[number]):
@@ -138,6 +141,12 @@ def shows_nodes(contactor: Side, target: Side) -> bool:
     choice = choose(contactor, target)
     stiffer = contactor.modulus > STIFFER * target.modulus
     return choice.contactor == 1 and choice.rule == "softer" and stiffer and target.tetrahedra
+
+
+def _outweighed(soft: Side, stiff: Side) -> bool:
+    """Whether facets say more than softness: the stiffer side is coarser by far, not stiffer by far, nor mostly bare."""
+    alike = stiff.modulus <= STIFFER * (1.0 + SAME_SIZE) * soft.modulus
+    return alike and stiff.size > FINEST * soft.size and not _bare(stiff, soft)
 
 
 def _bare(side: Side, other: Side) -> bool:
