@@ -65,8 +65,8 @@ def test_guess() -> None:
 
 @pytest.mark.long
 def test_steps_of_a_hook() -> None:
-    """Pushed over its catch, past the largest force: a quarter fewer iterations at least, and fewer steps, where what presses
-    stays closed."""
+    """Pushed over its catch, past the largest force: a quarter fewer iterations at least, and fewer steps, where what
+    presses stays closed."""
     model, bent = load_job(HOOK).model, DEFAULT.newton.bent
     iterations, steps = [], []
     for far in (0.0, bent):
