@@ -14,7 +14,16 @@ def test_the_catalogue_is_large_enough() -> None:
     assert len({(run.sound, run.name) for run in RUNS}) == len(RUNS)
 
 
-@pytest.mark.parametrize("run", [pytest.param(run, id=run.name.replace(" ", "-")) for run in RUNS])
+LARGE = ("flat stiff punch 10 times as fine, tri6", "Hertz octant tet4 finer")  # run with the long tests
+
+
+@pytest.mark.parametrize(
+    "run",
+    [
+        pytest.param(run, id=run.name.replace(" ", "-"), marks=[pytest.mark.long] if run.name in LARGE else [])
+        for run in RUNS
+    ],
+)
 def test_true_from_false(run: Run) -> None:
     """With defaults, unless a bad choice is the point of the run: sound ones pass all lines, unsound ones fail where they
     should, and say what to do."""

@@ -13,7 +13,7 @@ from abut.nonlinear.exchange import exchanged
 from abut.nonlinear.settings import DEFAULT
 from abut.solution.state import State, at_rest
 
-AGAIN = DEFAULT.newton.again
+AGAIN = DEFAULT.newton.patience
 
 TURNS = np.array([0, AGAIN])
 

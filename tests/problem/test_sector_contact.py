@@ -75,7 +75,12 @@ def test_pressure_is_that_of_lame() -> None:
 
 @pytest.mark.parametrize(
     ("cell", "cells", "other"),
-    [("quad4", (3, 3), (3, 5)), ("tri3", (3, 3), None), ("hex8", (2, 3, 2), None), ("tet10", (1, 3, 1), None)],
+    [
+        ("quad4", (3, 3), (3, 5)),
+        ("tri3", (3, 3), None),
+        pytest.param("hex8", (2, 3, 2), None, marks=pytest.mark.long),
+        pytest.param("tet10", (1, 3, 1), None, marks=pytest.mark.long),
+    ],
 )
 def test_friction_under_a_torque(cell: str, cells: tuple, other: tuple | None) -> None:
     """Sticking and slipping, on facets that no plane mirrors: tractions beyond a side are those of the other, turned."""

@@ -140,7 +140,7 @@ def flung(end: float) -> abut.Model:
     metal = abut.Plastic(YOUNG, 0.3, 1.0)
     return abut.Model(
         MESH, solids=[abut.Solid("bar", metal)], supports=[BELOW],
-        loads=[abut.Force("bar.top", (0.0, 0.0, 4.0))], solve=abut.SolveOptions(steps=4, end=end),
+        loads=[abut.Force("bar.top", (0.0, 0.0, 4.0))], solve=abut.SolveOptions(steps=4, end=end, max_iterations=10),
     )  # fmt: skip
 
 

@@ -15,7 +15,7 @@ Advance = Callable[[State], State]
 
 
 def exchanged(
-    system: Linearised, here: State, there: State, closings: NDArray[np.int64], again: int, advance: Advance
+    system: Linearised, here: State, there: State, closings: NDArray[np.int64], patience: int, advance: Advance
 ) -> State:
     """The state at the end of an iteration from ``here`` that would end at ``there``.
 
@@ -23,11 +23,11 @@ def exchanged(
     the linear problem a pressure on it changes theirs in proportion, which the two solutions tell; the first of them
     that it brings to nothing opens, and so on until the point presses (principal pivoting, Cottle and Dantzig 1968).
     What pulls when it does opens too, one after the other.
-    closings: (n,) how often each multiplier has closed in the step; again: times from which on a point may take the
+    closings: (n,) how often each multiplier has closed in the step; patience: times from which on a point may take the
     place of another; advance: the linear solution with a state's status. Without it
     the benchmark "beam-on-sharp-end-lower" jumps to a branch without contact."""
     pressures = _pressures(system)
-    pulls = pressures & here.closed & (closings >= again) & (there.multipliers < 0.0)
+    pulls = pressures & here.closed & (closings >= patience) & (there.multipliers < 0.0)
     if not pulls.any():
         return there
     point = int(np.argmin(np.where(pulls, there.multipliers, 0.0)))

@@ -240,7 +240,7 @@ def _following(step: Step, here: Trial, closings: NDArray[np.int64], accuracy: f
         return step.advanced(here.system, state, laws_of(here.system, state, step.asked), accuracy)
 
     there = _iterated(step, here.system, here.state, here.laws, accuracy)
-    other = exchanged(here.system, here.state, there, closings, step.settings.newton.again, solved)
+    other = exchanged(here.system, here.state, there, closings, step.settings.newton.patience, solved)
     if other is not there:
         return other, True
     seen = {here.state.status.tobytes()}

@@ -30,7 +30,10 @@ class NewtonSettings:
         "test_rolling.py",
     )  # fmt: skip
     halvings: int = _of(6, "halvings", "of a step by a line search", "test_stabilised.py::test_an_arch_snaps_through")
-    patience: int = _of(3, "iterations", "without progress, or of a short try", "test_search.py")
+    patience: int = _of(
+        3, "iterations", "without progress, of a short try, or closings of a point until it may take another's place",
+        "test_search.py, beam-on-sharp-end-lower",
+    )  # fmt: skip
     solutions: int = _of(
         15, "linear solutions", "of one try for a status", "test_friction_assemblies.py",
     )  # fmt: skip
@@ -40,9 +43,6 @@ class NewtonSettings:
     same: float = _of(
         0.01, "of an error", "by which it may differ from that of an iteration to which others come back",
         "test_unsettled.py",
-    )  # fmt: skip
-    again: int = _of(
-        2, "closings in a step", "after which a point may take the place of another", "test_verify.py",
     )  # fmt: skip
 
 
