@@ -15,7 +15,6 @@ from abut.linear.solver import LinearSolver, Prepared
 from abut.nonlinear.drag import Drag, dragged
 from abut.nonlinear.exchange import exchanged
 from abut.nonlinear.finite_laws import (
-    barely_covered,
     following_status,
     laws_of,
     left_open,
@@ -26,9 +25,10 @@ from abut.nonlinear.finite_laws import (
     yielding,
 )
 from abut.nonlinear.forcing import forcing
+from abut.nonlinear.friction import solve_linearised
 from abut.nonlinear.holding import not_adrift, resisting, sticking
 from abut.nonlinear.iteration import Found, Increment, advance, largest_pressure, largest_so_far, part_of, report
-from abut.nonlinear.laws import Asked, friction_laws
+from abut.nonlinear.laws import Asked, barely_covered, friction_laws
 from abut.nonlinear.line_search import shortened
 from abut.nonlinear.newton import End, Method, newton
 from abut.nonlinear.settings import NOTHING, Settings
@@ -242,14 +242,21 @@ def _following(step: Step, here: Trial, closings: NDArray[np.int64], accuracy: f
     other = exchanged(here.system, here.state, there, closings, step.settings.newton.again, solved)
     if other is not there:
         return other, True
-    seen = {here.state.status.tobytes()}
-    while step.careful and len(seen) < step.settings.newton.solutions:
-        wanted = wanted_status(here.system, there, step.increment, step.asked)
-        if wanted.tobytes() in seen:
-            break
-        seen.add(wanted.tobytes())
-        there = solved(here.state.with_status(wanted))
-    return there, False
+    return (_whole(step, here, there) if step.careful else there), False
+
+
+def _whole(step: Step, here: Trial, there: State) -> State:
+    """The solution of the problem near ``here``, status and all, from what an iteration has come to; that where none is
+    found."""
+    system = here.system
+    if any(step.asked.of(pair, system) is not None for pair in system.pairs):
+        return there
+    assert step.prepared is not None
+    wanted = wanted_status(system, there, step.increment, step.asked)
+    found = solve_linearised(step.prepared, there.with_status(wanted), step.increment)
+    if found is None:
+        return there
+    return not_adrift(step.problem, system, here.state, found, step.settings.holding.near)
 
 
 def _iterated(
