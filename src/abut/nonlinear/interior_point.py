@@ -43,8 +43,8 @@ class Manner:
 @dataclass(frozen=True)
 class Programme:
     """A load step on all functions of all pairs that are not tied, of those with a target opposite: ``on`` (n_functions,).
-    normal: (k,) their pressures' numbers; scale: (k,) gap per pressure; rubs: (r,) functions with friction; along: (r, d - 1)
-    their tractions' numbers, -1 where there is none; idle: numbers of multipliers that carry nothing."""
+    normal: (k,) their pressures' numbers; scale: (k,) gap per pressure; rubs: (r,) functions with friction; along:
+    (r, d - 1) their tractions' numbers, -1 where there is none; idle: numbers of multipliers that carry nothing."""
 
     solver: Prepared
     on: NDArray[np.bool_]
@@ -72,7 +72,15 @@ class Programme:
         on, none = ~bare[numbers], numbers[:0]
         numbers, tangents = numbers[on], tangents[on]
         programme = cls(
-            solver, on, numbers, system.scale[numbers], np.arange(len(numbers)), tangents, none, softness(solver), settings
+            solver,
+            on,
+            numbers,
+            system.scale[numbers],
+            np.arange(len(numbers)),
+            tangents,
+            none,
+            softness(solver),
+            settings,
         )
         holds = programme.bound(np.ones(len(numbers)))[0] > 0.0
         nothing = bare if system.forgotten is None else bare | system.forgotten

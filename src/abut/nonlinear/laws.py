@@ -77,7 +77,9 @@ def without(law: LawRows, idle: NDArray[np.bool_], scale: Vector, multipliers: V
 
 def barely_covered(system: Linearised) -> NDArray[np.bool_]:
     """(n,) multipliers with hardly any target opposite, which carry nothing."""
-    return system.join([np.zeros(len(p), bool) if p.tied else p.of_functions(bare(p)) for p in system.pairs]).astype(bool)
+    return system.join([np.zeros(len(p), bool) if p.tied else p.of_functions(bare(p)) for p in system.pairs]).astype(
+        bool
+    )
 
 
 def at_status(

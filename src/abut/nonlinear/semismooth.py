@@ -46,7 +46,8 @@ Vector = NDArray[np.float64]
 @dataclass(frozen=True)
 class Trial:
     """What a state leaves open. own: the problem near it; system: with the drag of the step; forces: (n_unknowns,) over the
-    largest; broken: (n,) laws over the largest pressure; size: all of it together; rounding: of forces over the largest."""
+    largest; broken: (n,) laws over the largest pressure; size: all of it together, infinite where the material is no more;
+    rounding: of forces over the largest; unsound: what is wrong with the material."""
 
     own: Linearised
     system: Linearised
@@ -57,6 +58,7 @@ class Trial:
     size: float
     changed: NDArray[np.bool_]
     rounding: float
+    unsound: str = ""
 
     @property
     def force(self) -> float:
@@ -161,28 +163,28 @@ def _solved_again(step: Step, asked: Asked, guess: State | None, time: float) ->
 
 def _newton(step: Step, guess: State | None, time: float) -> Trial:
     begun = clocks.perf_counter()
-    method = LargeMotion(step, begun)
     here = _balance(step, _carried(step, time) if guess is None else guess, step.before, guessed=guess is not None)
     if guess is None:
-        method.begun = _report(step, here, begun)
+        begun = _report(step, here, begun)
         if _balanced(step, here, np.inf):
             return here
     state = nearest_kept(here.system, step.before, here.state, 0.1 * step.settings.holding.near)
     here = here if state is here.state else replace(here, state=state, laws=laws_of(here.system, state, step.asked))
-    there, end = newton(method, here, step.limit - len(step.done))
+    there, end = newton(LargeMotion(step, here, begun), here, step.limit - len(step.done))
     if end is not End.SOLVED and not step.failed:
         step.failed = _unsettled(step, there)
     return there
 
 
 class LargeMotion(Method[Trial]):
-    """The problem linearised at every state, with the status that its laws ask for there; by a line search where the step is
-    careful, as it becomes when iterations go round in a circle. begun: when the iteration was."""
+    """The problem linearised at every state, with the status that its laws ask for there; where that comes to nothing the
+    step is careful: its linear problems are solved whole, and a line search shortens the way. begun: when it was."""
 
-    def __init__(self, step: Step, begun: float) -> None:
-        self._step, self.begun = step, begun
+    def __init__(self, step: Step, begin: Trial, begun: float) -> None:
+        self._step, self.begun, self._best = step, begun, begin
         self._closings = np.zeros(len(step.before.status), dtype=np.int64)
         self._before, self._errors, self._swapped = np.inf, list[float](), False
+        self._idle, self._back = 0, False
 
     def advanced(self, here: Trial) -> Trial:
         """As in ``Method``."""
@@ -196,10 +198,14 @@ class LargeMotion(Method[Trial]):
 
     def globalised(self, here: Trial, there: Trial) -> Trial:
         """The whole step, or the part of it that a line search finds to be better."""
-        if (self._step.careful and not self._swapped) or not np.isfinite(there.size):
-            there = _shortened(self._step, here, there)
+        step = self._step
+        if there.unsound and not step.careful:
+            self._back = True
+            return there
+        if (step.careful and not self._swapped) or not np.isfinite(there.size):
+            there = _shortened(step, here, there)
         if not np.isfinite(there.size):
-            self._step.failed = "forces are not finite"
+            step.failed = there.unsound or "forces are not finite"
             return here
         self._before = here.error
         return there
@@ -209,15 +215,27 @@ class LargeMotion(Method[Trial]):
         step = self._step
         if step.failed:
             return End.STALLED
+        if self._back:
+            return None
         self._errors.append(there.error)
         self.begun = _report(step, there, self.begun)
         if _balanced(step, there, self._before):
             return End.SOLVED
-        if circling(self._errors, step.settings):
+        better = there.size < self._best.size
+        self._best, self._idle = (there, 0) if better else (self._best, self._idle + 1)
+        if circling(self._errors, step.settings) or self._idle >= step.settings.newton.patience:
             if step.careful:
                 return End.STALLED
-            step.careful, self._errors = True, []
+            self._back = True
         return None
+
+    def followed(self, there: Trial) -> Trial:
+        """As in ``Method``; a step that becomes careful goes on from what has left least so far."""
+        if not self._back:
+            return there
+        self._step.careful, self._errors, self._idle, self._back = True, [], 0, False
+        self._before = np.inf
+        return self._best
 
 
 def _unsettled(step: Step, here: Trial) -> str:
@@ -324,14 +342,11 @@ def _judged(step: Step, own: Linearised, state: State, guessed: bool = False) ->
 
 
 def _tried(step: Step, here: Trial, state: State) -> Trial:
-    """Near a trial state; under a drag without a size where a cell is beyond its material there, so that less of the way is
-    tried."""
+    """Near a trial state; without a size where a cell is beyond its material there, so that less of the way is tried."""
     try:
         return _balance(step, state, here.state)
-    except Unsound:
-        if step.drag is None:
-            raise
-        return replace(here, state=state, size=np.inf)
+    except Unsound as reason:
+        return replace(here, state=state, size=np.inf, unsound=str(reason))
 
 
 def _shortened(step: Step, here: Trial, full: Trial) -> Trial:
