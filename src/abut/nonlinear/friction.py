@@ -53,9 +53,9 @@ def solve_linearised(solver: Prepared, begin: State, increment: Increment) -> St
     """The solution of a problem that is linearised at a state of large displacements, from ``begin`` and its status on; None
     where none is found.
 
-    Statuses that go round from iteration to iteration, all that slip coming to stick and back, have none of their own
-    linear problem: each is told by the laws at the solution with the one before. As long as nothing says otherwise
-    each of these problems has a solution all the same."""
+    Statuses go round, points that slip come to stick and back, where all take at once what the laws ask for at the solution
+    with the ones before. The linear problem has a solution all the same, with some that slip and some that stick, which
+    interior points find: ``test_the_laws_are_met_from_any_status``."""
     settings = increment.settings
     course = Course(solver, increment, [], _unseen)
     try:

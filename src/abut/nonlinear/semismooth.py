@@ -96,6 +96,11 @@ class Step:
     reached: State | None = None
 
     @property
+    def rubs(self) -> bool:
+        """Whether a contact has friction, whose statuses may go round."""
+        return any(pair.frictional for pair in self.problem.pairs)
+
+    @property
     def settings(self) -> Settings:
         """Thresholds."""
         return self.increment.settings
@@ -192,6 +197,9 @@ class LargeMotion(Method[Trial]):
         accuracy = forcing(here.error, self._before, step.settings)
         following, self._swapped = _following(step, here, self._closings, accuracy)
         step.asked = replace(step.asked, by_pressure=False)
+        if following is None:
+            step.failed = _unsettled(step, here, "no status is what the laws ask for")
+            return here
         there = _tried(step, here, following)
         self._closings += there.state.closed & ~here.state.closed
         return there
@@ -199,7 +207,9 @@ class LargeMotion(Method[Trial]):
     def globalised(self, here: Trial, there: Trial) -> Trial:
         """The whole step, or the part of it that a line search finds to be better."""
         step = self._step
-        if there.unsound and not step.careful:
+        if step.failed:
+            return here
+        if there.unsound and not step.careful and step.rubs:
             self._back = True
             return there
         if (step.careful and not self._swapped) or not np.isfinite(there.size):
@@ -223,7 +233,8 @@ class LargeMotion(Method[Trial]):
             return End.SOLVED
         better = there.size < self._best.size
         self._best, self._idle = (there, 0) if better else (self._best, self._idle + 1)
-        if circling(self._errors, step.settings) or self._idle >= step.settings.newton.patience:
+        gains = self._idle < step.settings.newton.patience or not step.rubs
+        if circling(self._errors, step.settings) or not gains:
             if step.careful:
                 return End.STALLED
             self._back = True
@@ -238,10 +249,9 @@ class LargeMotion(Method[Trial]):
         return self._best
 
 
-def _unsettled(step: Step, here: Trial) -> str:
+def _unsettled(step: Step, here: Trial, why: str = "iterations go round in a circle") -> str:
     """Why iterations have ended without a solution."""
-    many = f"{step.limit} iterations were not enough"
-    why = many if len(step.done) >= step.limit else "iterations go round in a circle"
+    why = f"{step.limit} iterations were not enough" if len(step.done) >= step.limit else why
     most = most_at(step.problem, here.forces, here.broken)
     return (
         f"{why}: {here.force:.1e} of the forces, {here.law:.1e} of the laws, {most}, and "
@@ -249,9 +259,9 @@ def _unsettled(step: Step, here: Trial) -> str:
     )
 
 
-def _following(step: Step, here: Trial, closings: NDArray[np.int64], accuracy: float) -> tuple[State, bool]:
+def _following(step: Step, here: Trial, closings: NDArray[np.int64], accuracy: float) -> tuple[State | None, bool]:
     """One iteration on, and whether a point has taken the place of another in it; of a careful step with the status that the
-    laws ask for at its end, if it can be found. closings: as in ``exchanged``."""
+    laws ask for at its end, None where there is none. closings: as in ``exchanged``."""
 
     def solved(state: State) -> State:
         return step.advanced(here.system, state, laws_of(here.system, state, step.asked), accuracy)
@@ -263,17 +273,17 @@ def _following(step: Step, here: Trial, closings: NDArray[np.int64], accuracy: f
     return (_whole(step, here, there) if step.careful else there), False
 
 
-def _whole(step: Step, here: Trial, there: State) -> State:
-    """The solution of the problem near ``here``, status and all, from what an iteration has come to; that where none is
-    found."""
+def _whole(step: Step, here: Trial, there: State) -> State | None:
+    """The solution of the problem near ``here``, status and all, from what an iteration has come to, None where none is
+    found; ``there`` itself with laws of one's own, which the searches do not know."""
     system = here.system
     if any(step.asked.of(pair, system) is not None for pair in system.pairs):
         return there
     assert step.prepared is not None
     wanted = wanted_status(system, there, step.increment, step.asked)
     found = solve_linearised(step.prepared, there.with_status(wanted), step.increment)
-    if found is None:
-        return there
+    if found is None:  # without friction bodies that jump are led on by iterations that leave more for a while
+        return None if step.rubs else there
     return not_adrift(step.problem, system, here.state, found, step.settings.holding.near)
 
 
@@ -342,10 +352,13 @@ def _judged(step: Step, own: Linearised, state: State, guessed: bool = False) ->
 
 
 def _tried(step: Step, here: Trial, state: State) -> Trial:
-    """Near a trial state; without a size where a cell is beyond its material there, so that less of the way is tried."""
+    """Near a trial state; under a drag, and with friction, without a size where a cell is beyond its material there, so that
+    less of the way is tried."""
     try:
         return _balance(step, state, here.state)
     except Unsound as reason:
+        if step.drag is None and not step.rubs:
+            raise
         return replace(here, state=state, size=np.inf, unsound=str(reason))
 
 
