@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -183,3 +185,23 @@ def test_a_run_that_the_onset_cut_is_followed() -> None:
     followed = Pace([1.0], first=1.0, slips=Slips())
     followed.repeat(time, 5, onset=onset)
     assert (followed.time, followed.end) == (time, pace.end)
+
+
+def test_what_sticks_and_begins_again_has_had_its_points() -> None:
+    """Once as much as carries all of friction has begun to slip, steps follow no more of it until the way ahead is new."""
+    again, pace = (
+        Onset(fresh=FINER, bent=1.0, sticks=0.5, limit=1.0),
+        Pace([0.5, 1.0], legs=[0.5], kinks=[0.5], slips=Slips()),
+    )
+    while not pace.refine(replace(again, fresh=1.0)):
+        pace.take(5, onset=again)
+    for _ in range(POINTS):
+        assert pace.time < 0.5
+        before, end = pace.time, pace.end
+        assert end is not None
+        pace.take(5, onset=again)
+    assert pace.end - pace.time > 1.4 * (end - before)
+    assert not pace.refine(replace(again, fresh=1.0))
+    while pace.time < 0.5:
+        pace.take(5, onset=again)
+    assert pace.refine(replace(again, fresh=1.0))

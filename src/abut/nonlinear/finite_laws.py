@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 from abut.contact.laws import Law, LawState
 from abut.nonlinear.friction_laws import next_status
 from abut.nonlinear.iteration import Increment
-from abut.nonlinear.laws import Asked, friction_laws
-from abut.problem.current import bare
+from abut.nonlinear.laws import Asked, barely_covered, friction_laws, without
 from abut.problem.laws import SOFT, LawRows, at_multipliers
 from abut.problem.linearised import NOTHING, Linearised
 from abut.problem.pair import Pair
@@ -25,31 +24,27 @@ Status = NDArray[np.int8]
 Vector = NDArray[np.float64]
 
 
-def barely_covered(system: Linearised) -> NDArray[np.bool_]:
-    """(n,) multipliers with hardly any target opposite, which carry nothing."""
-    parts = [np.zeros(len(p), bool) if p.tied else p.of_functions(bare(p)) for p in system.pairs]
-    return np.concatenate([np.zeros(0, bool), *parts])
-
-
 def laws_of(system: Linearised, state: State, asked: Asked) -> list[LawRows]:
     """The laws of all pairs with the status as it is; multipliers of friction without a past carry nothing."""
     laws = friction_laws(system, state)
+    if not any(asked.of(pair, system) is not None for pair in system.pairs):
+        return laws
     forgotten = np.zeros(len(system), bool) if system.forgotten is None else system.forgotten
     parts = zip(
-        system.pairs, laws, system.split(forgotten),
+        system.pairs, laws, system.split(forgotten | barely_covered(system)),
         *map(system.split, (system.gap(state), state.multipliers, state.closed)),
     )  # fmt: skip
     result = []
     for pair, usual, idle, gap, multipliers, closed in parts:
         own, law = asked.of(pair, system), usual
         if own is not None:
-            idle = idle | pair.of_functions(bare(pair))
             meeting = asked.by_pressure and not isinstance(pair.contact.law, str)
             met = _met(pair, own, gap, multipliers, closed) if meeting else gap
             with np.errstate(over="ignore", invalid="ignore"):
                 law = at_multipliers(pair, own, met, multipliers, closed)
             law = replace(law, residual=law.residual + law.by_gap @ (gap - met)) if meeting else law
-        result.append(_without(law, idle, pair.scale, multipliers))
+            law = without(law, idle, pair.scale, multipliers)
+        result.append(law)
     return result
 
 
@@ -76,27 +71,12 @@ def _met(pair: Pair, law: Law, gap: Vector, pressure: Vector, closed: NDArray[np
     return np.where(found, pair.weight * low, gap)
 
 
-def _without(law: LawRows, idle: NDArray[np.bool_], scale: Vector, multipliers: Vector) -> LawRows:
-    """Rows that set some multipliers to zero."""
-    if not idle.any():
-        return law
-    keep = sp.diags((~idle).astype(float))
-    return replace(
-        law,
-        residual=np.where(idle, -scale * multipliers, law.residual),
-        closed=law.closed & ~idle,
-        by_gap=(keep @ law.by_gap).tocsr(),
-        by_pressure=(keep @ law.by_pressure - sp.diags(np.where(idle, scale, 0.0))).tocsr(),
-        decoupled=law.decoupled | idle,
-    )
-
-
 def wanted_status(
     system: Linearised, state: State, increment: Increment, asked: Asked, gap: Vector | None = None
 ) -> NDArray[np.int8]:
     """The status (n,) that complementarity and Coulomb's law ask for; that of other laws stays. gap: (n,) to judge by; left
     out: that of the state."""
-    wanted = np.where(barely_covered(system), OPEN, next_status(system, state, increment, gap))
+    wanted = next_status(system, state, increment, gap)
     kept = [np.full(len(pair), not pair.frictional and asked.of(pair, system) is not None) for pair in system.pairs]
     return np.where(system.join(kept).astype(bool), state.status, wanted).astype(np.int8)
 

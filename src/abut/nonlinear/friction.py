@@ -49,6 +49,27 @@ def solve_friction(
     return found
 
 
+def solve_linearised(solver: Prepared, begin: State, increment: Increment) -> State | None:
+    """The solution of a problem that is linearised at a state of large displacements, from ``begin`` and its status on; None
+    where none is found.
+
+    Statuses go round, points that slip come to stick and back, where all take at once what the laws ask for at the solution
+    with the ones before. The linear problem has a solution all the same, with some that slip and some that stick, which
+    interior points find: ``test_the_laws_are_met_from_any_status``."""
+    settings = increment.settings
+    course = Course(solver, increment, [], _unseen)
+    try:
+        found = slid(course, begin, settings.newton.solutions)
+    except SingularModelError:
+        found = None
+    found = found or search(course, begin, settings.steps.solutions)
+    return found.state if found is not None and found.converged else None
+
+
+def _unseen(_: Iteration) -> None:
+    return None
+
+
 def _completed(system: Linearised, state: State) -> Status:
     """The status to begin with: that of the state, and as much more in contact as it takes to hold every body."""
     closed = np.concatenate([np.zeros(0, bool), *map(_whole, system.pairs, system.split(state.closed))])

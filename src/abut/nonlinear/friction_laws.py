@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.nonlinear.iteration import Increment
+from abut.nonlinear.laws import barely_covered
 from abut.problem.linearised import NOTHING, Linearised
 from abut.problem.pair import Pair
 from abut.solution.state import CLOSED, OPEN, SLIPPING, State
@@ -15,7 +16,8 @@ Status = NDArray[np.int8]
 
 
 def next_status(system: Linearised, state: State, increment: Increment, gap: Vector | None = None) -> Status:
-    """The status that the laws ask for, theory (R5), (R6), of each multiplier. What differs by rounding alone stays.
+    """The status that the laws ask for, theory (R5), (R6), of each multiplier. What differs by rounding alone stays;
+    what hardly has a target opposite is open.
     gap: (n,) weighted gaps and slips to judge by; left out: those of the state."""
     if not len(state.multipliers):
         return state.status
@@ -24,14 +26,13 @@ def next_status(system: Linearised, state: State, increment: Increment, gap: Vec
     small = increment.settings.newton.balanced * max(reference, NOTHING)
     gap = system.gap(state) if gap is None else gap
     gaps, multipliers, before = (system.split(part) for part in (gap, state.multipliers, state.status))
-    return system.join(
-        [
-            np.full(len(pair), CLOSED if pair.two_way else OPEN)
-            if pair.decided
-            else _wanted(pair, system.factors, gap, part, status, small)
-            for pair, gap, part, status in zip(system.pairs, gaps, multipliers, before)
-        ]
-    )
+    wanted = [
+        np.full(len(pair), CLOSED if pair.two_way else OPEN)
+        if pair.decided
+        else _wanted(pair, system.factors, gap, part, status, small)
+        for pair, gap, part, status in zip(system.pairs, gaps, multipliers, before)
+    ]
+    return np.where(barely_covered(system), OPEN, system.join(wanted)).astype(np.int8)
 
 
 def _contacts(system: Linearised, values: Vector) -> list[tuple[Pair, Vector]]:

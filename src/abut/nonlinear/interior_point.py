@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from abut.linear.solver import Prepared, Solve
 from abut.nonlinear.cones import Scaling, depth, longest, mirrored, product, quotient, scaling, times
+from abut.nonlinear.laws import barely_covered
 from abut.nonlinear.repeated_solutions import solutions
 from abut.nonlinear.settings import Settings
 from abut.nonlinear.softness import softness
@@ -42,11 +43,13 @@ class Manner:
 
 @dataclass(frozen=True)
 class Programme:
-    """A load step on all functions of all pairs that are not tied. normal: (k,) their pressures' numbers; scale: (k,) gap
-    per pressure; rubs: (r,) functions with friction; along: (r, d - 1) their tractions' numbers, -1 where there is none;
-    idle: numbers of tractions without friction, and of what does not act."""
+    """A load step on all functions of all pairs that are not tied, of those with a target opposite: ``on`` (n_functions,).
+    normal: (k,) their pressures' numbers; scale: (k,) gap per pressure; rubs: (r,) functions with friction; along:
+    (r, d - 1) their tractions' numbers, -1 where there is none; idle: numbers of multipliers that carry nothing, and of
+    what does not act."""
 
     solver: Prepared
+    on: NDArray[np.bool_]
     normal: Numbers
     scale: Vector
     rubs: Numbers
@@ -58,7 +61,6 @@ class Programme:
     @classmethod
     def of(cls, solver: Prepared, settings: Settings) -> Programme:
         system, first, normal, along = solver.system, 0, [], []
-        away = np.flatnonzero(system.away)
         width = max((pair.index.shape[1] for pair in system.pairs if pair.frictional), default=1) - 1
         for pair in system.pairs:
             if not pair.decided:
@@ -68,32 +70,40 @@ class Programme:
                 normal.append(first + np.arange(len(pair.space)))
                 along.append(beside)
             first += len(pair)
-        numbers, tangents = np.concatenate(normal), np.concatenate(along)
+        numbers, tangents, bare = np.concatenate(normal), np.concatenate(along), barely_covered(system)
+        on, none = ~bare[numbers], numbers[:0]
+        numbers, tangents = numbers[on], tangents[on]
         programme = cls(
             solver,
+            on,
             numbers,
             system.scale[numbers],
             np.arange(len(numbers)),
             tangents,
-            numbers[:0],
+            none,
             softness(solver),
             settings,
         )
         holds = programme.bound(np.ones(len(numbers)))[0] > 0.0
+        nothing = bare if system.forgotten is None else bare | system.forgotten
+        without = np.append(nothing | system.away, False)
+        without[tangents[~holds]] = True
+        tangents = np.where(without[tangents], -1, tangents)
         rubs = np.flatnonzero(holds & (tangents >= 0).any(axis=1))
-        idle = tangents[~holds]
-        return replace(programme, rubs=rubs, along=tangents[rubs], idle=np.concatenate([idle[idle >= 0], away]))
+        return replace(programme, rubs=rubs, along=tangents[rubs], idle=np.flatnonzero(without[:-1]))
 
     def bound(self, pressure: Vector) -> tuple[Vector, Vector]:
-        """Of the tractions of ``rubs`` under pressures (k,) of all functions, and its derivative."""
+        """Of the tractions of ``rubs`` under pressures (k,), and its derivative."""
         system, first, parts = self.solver.system, 0, []
+        everywhere = np.zeros(len(self.on))
+        everywhere[self.on] = pressure
         for pair in system.pairs:
             if not pair.decided:
-                own = pressure[first : first + len(pair.space)]
+                own = everywhere[first : first + len(pair.space)]
                 parts.append(_bound(pair, system.factors, own, self.settings.interior.steepest))
                 first += len(pair.space)
         bound, slope = (np.concatenate(values) for values in zip(*parts))
-        return bound[self.rubs], slope[self.rubs]
+        return bound[self.on][self.rubs], slope[self.on][self.rubs]
 
     def tangential(self, values: Vector) -> Vector:
         """Values (n,) of all multipliers along the tangents of ``rubs``, (r, d - 1); zero where there is none."""
@@ -201,6 +211,7 @@ def begin(programme: Programme, state: State) -> Interior:
     """The starting point: one solution with softness everywhere, theory (V17), tractions at most halfway to their bounds."""
     system = programme.solver.system
     soft = np.where(system.tied, 0.0, programme.softness * system.scale)
+    soft[programme.idle] = system.scale[programme.idle]
     gap = system.gap(state)
     gap[programme.idle] = 0.0
     rows = system.rows(_by_pairs(programme, -gap - soft * state.multipliers, sp.diags(-soft, format="csr")))

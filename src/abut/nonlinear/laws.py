@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from abut.contact.laws import Complementarity, ConstraintFunction, Coulomb, Gone, Law, Tied
 from abut.contact.smooth_friction import SmoothCoulomb
+from abut.problem.current import bare
 from abut.problem.laws import LawRows, at_multipliers, giving
 from abut.problem.linearised import Linearised
 from abut.problem.pair import Pair
@@ -49,8 +51,35 @@ def active_laws(system: Linearised, state: State) -> list[LawRows]:
 
 
 def friction_laws(system: Linearised, state: State) -> list[LawRows]:
-    """The same for one iteration, unique where friction repeats itself: ``giving``."""
-    return [giving(*part) for part in zip(system.pairs, active_laws(system, state))]
+    """The same for one iteration, unique where friction repeats itself: ``giving``; multipliers of friction without a past
+    carry nothing."""
+    laws = [giving(*part) for part in zip(system.pairs, active_laws(system, state))]
+    if system.forgotten is None:
+        return laws
+    parts = zip(system.pairs, laws, system.split(system.forgotten), system.split(state.multipliers))
+    return [without(law, idle, pair.scale, multipliers) for pair, law, idle, multipliers in parts]
+
+
+def without(law: LawRows, idle: NDArray[np.bool_], scale: Vector, multipliers: Vector) -> LawRows:
+    """Rows that set some multipliers to zero."""
+    if not idle.any():
+        return law
+    keep = sp.diags((~idle).astype(float))
+    return replace(
+        law,
+        residual=np.where(idle, -scale * multipliers, law.residual),
+        closed=law.closed & ~idle,
+        by_gap=(keep @ law.by_gap).tocsr(),
+        by_pressure=(keep @ law.by_pressure - sp.diags(np.where(idle, scale, 0.0))).tocsr(),
+        decoupled=law.decoupled | idle,
+    )
+
+
+def barely_covered(system: Linearised) -> NDArray[np.bool_]:
+    """(n,) multipliers with hardly any target opposite, which carry nothing."""
+    return system.join([np.zeros(len(p), bool) if p.tied else p.of_functions(bare(p)) for p in system.pairs]).astype(
+        bool
+    )
 
 
 def at_status(

@@ -42,7 +42,7 @@ class Pace:
         self._length = self._fresh()  # as iterations tell
         self._fits = slips is not None and slips.fits
         self._curve = self._settings.smallest * self._leg if self._fits else math.inf  # as the onset of slip asks for
-        self._goes_on = False
+        self._goes_on, self._begun = False, 0.0
 
     @property
     def goal(self) -> float | None:
@@ -101,7 +101,7 @@ class Pace:
         assert end is not None
         steps = self._settings
         length = max(1.0 / steps.points, steps.aim * factor) * (end - self.time)
-        if not self._follows or factor >= 0.5 or length < steps.smallest * self._leg:
+        if not self._follows or self._followed or factor >= 0.5 or length < steps.smallest * self._leg:
             return False
         self._curve = self._rounded(length)
         return True
@@ -114,13 +114,14 @@ class Pace:
         first, taken, limited = self._fits and self.time == 0.0, end - self.time, self._curve < self._length
         self.time, self._goes_on = end, not first
         if any(abs(end - leg) < self._same for leg in self._legs):
-            self._length, self._curve, self._goes_on = self._fresh(), math.inf, False
+            self._length, self._curve, self._goes_on, self._begun = self._fresh(), math.inf, False, 0.0
             return
+        self._begun = 0.0 if first or self.turned else self._begun + onset.begun
         if self._follows:
             ahead = (
                 onset if onset.sticks > 0.0 else replace(onset, fresh=onset.turns)
             )  # where all slips it may only turn
-            free = first or (ahead.sticks <= 0.0 and math.isinf(self._next(ahead)))
+            free = first or self._followed or (ahead.sticks <= 0.0 and math.isinf(self._next(ahead)))
             self._curve = math.inf if free else self._rounded(self._factor(ahead) * taken)
         steps = self._settings
         hard = iterations > 2 * steps.easy
@@ -163,6 +164,12 @@ class Pace:
         if fresh <= self._same or bent <= 0.0:
             return math.inf
         return max(1.0 / (self._settings.points * fresh), math.sqrt(self._settings.missed / bent))
+
+    @property
+    def _followed(self) -> bool:
+        """Whether as much as carries all of friction has begun to slip since the way ahead was new: what sticks and begins
+        again has had its points."""
+        return self._begun >= 1.0 - self._same
 
     @property
     def _leg(self) -> float:

@@ -16,10 +16,10 @@ Vector = NDArray[np.float64]
 
 
 def solutions(solver: Prepared, rows: Rows, state: State, accuracy: AccuracySettings) -> Solve:
-    """With rows near a state, as often as wanted: (residual of equilibrium, of the rows) -> (du, dp). Without friction by
-    factors that are kept, or iteratively, each solution from the one before on."""
+    """With rows near a state, as often as wanted: (residual of equilibrium, of the rows) -> (du, dp). Where they are
+    symmetric by factors that are kept, or iteratively, each solution from the one before on."""
     system = solver.system
-    if any(pair.frictional for pair in system.pairs):
+    if not rows.symmetric or any(pair.frictional for pair in system.pairs):
         return lambda residual, of_law: solver.solve(
             replace(rows, residual=of_law), residual, state.multipliers, accuracy.stride
         )

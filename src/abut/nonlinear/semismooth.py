@@ -15,7 +15,6 @@ from abut.linear.solver import LinearSolver, Prepared
 from abut.nonlinear.drag import Drag, dragged
 from abut.nonlinear.exchange import exchanged
 from abut.nonlinear.finite_laws import (
-    barely_covered,
     following_status,
     laws_of,
     left_open,
@@ -26,9 +25,10 @@ from abut.nonlinear.finite_laws import (
     yielding,
 )
 from abut.nonlinear.forcing import forcing
+from abut.nonlinear.friction import solve_linearised
 from abut.nonlinear.holding import not_adrift, resisting, sticking
 from abut.nonlinear.iteration import Found, Increment, advance, largest_pressure, largest_so_far, part_of, report
-from abut.nonlinear.laws import Asked, friction_laws
+from abut.nonlinear.laws import Asked, barely_covered, friction_laws
 from abut.nonlinear.line_search import shortened
 from abut.nonlinear.newton import End, Method, newton
 from abut.nonlinear.settings import Settings
@@ -47,7 +47,8 @@ Vector = NDArray[np.float64]
 @dataclass(frozen=True)
 class Trial:
     """What a state leaves open. own: the problem near it; system: with the drag of the step; forces: (n_unknowns,) over the
-    largest; broken: (n,) laws over the largest pressure; size: all of it together; rounding: of forces over the largest."""
+    largest; broken: (n,) laws over the largest pressure; size: all of it together, infinite where the material is no more;
+    rounding: of forces over the largest; unsound: what is wrong with the material."""
 
     own: Linearised
     system: Linearised
@@ -58,6 +59,7 @@ class Trial:
     size: float
     changed: NDArray[np.bool_]
     rounding: float
+    unsound: str = ""
 
     @property
     def force(self) -> float:
@@ -93,6 +95,11 @@ class Step:
     done: list[Iteration] = field(default_factory=list)
     failed: str = ""
     reached: State | None = None
+
+    @property
+    def rubs(self) -> bool:
+        """Whether a contact has friction, whose statuses may go round."""
+        return any(pair.frictional for pair in self.problem.pairs)
 
     @property
     def settings(self) -> Settings:
@@ -162,28 +169,28 @@ def _solved_again(step: Step, asked: Asked, guess: State | None, time: float) ->
 
 def _newton(step: Step, guess: State | None, time: float) -> Trial:
     begun = clocks.perf_counter()
-    method = LargeMotion(step, begun)
     here = _balance(step, _carried(step, time) if guess is None else guess, step.before, guessed=guess is not None)
     if guess is None:
-        method.begun = _report(step, here, begun)
+        begun = _report(step, here, begun)
         if _balanced(step, here, np.inf):
             return here
     state = nearest_kept(here.system, step.before, here.state, 0.1 * step.settings.holding.near)
     here = here if state is here.state else replace(here, state=state, laws=laws_of(here.system, state, step.asked))
-    there, end = newton(method, here, step.limit - len(step.done))
+    there, end = newton(LargeMotion(step, here, begun), here, step.limit - len(step.done))
     if end is not End.SOLVED and not step.failed:
         step.failed = _unsettled(step, there)
     return there
 
 
 class LargeMotion(Method[Trial]):
-    """The problem linearised at every state, with the status that its laws ask for there; by a line search where the step is
-    careful, as it becomes when iterations go round in a circle. begun: when the iteration was."""
+    """The problem linearised at every state, with the status that its laws ask for there; where that comes to nothing the
+    step is careful: its linear problems are solved whole, and a line search shortens the way. begun: when it was."""
 
-    def __init__(self, step: Step, begun: float) -> None:
-        self._step, self.begun = step, begun
+    def __init__(self, step: Step, begin: Trial, begun: float) -> None:
+        self._step, self.begun, self._best = step, begun, begin
         self._closings = np.zeros(len(step.before.status), dtype=np.int64)
         self._before, self._errors, self._swapped = np.inf, list[float](), False
+        self._idle, self._back = 0, False
 
     def advanced(self, here: Trial) -> Trial:
         """One iteration, as in ``Method``."""
@@ -191,16 +198,25 @@ class LargeMotion(Method[Trial]):
         accuracy = forcing(here.error, self._before, step.settings)
         following, self._swapped = _following(step, here, self._closings, accuracy)
         step.asked = replace(step.asked, by_pressure=False)
+        if following is None:
+            step.failed = _unsettled(step, here, "no status is what the laws ask for")
+            return here
         there = _tried(step, here, following)
         self._closings += there.state.closed & ~here.state.closed
         return there
 
     def globalised(self, here: Trial, there: Trial) -> Trial:
         """The whole step, or the part of it that a line search finds to be better."""
-        if (self._step.careful and not self._swapped) or not np.isfinite(there.size):
-            there = _shortened(self._step, here, there)
+        step = self._step
+        if step.failed:
+            return here
+        if there.unsound and not step.careful and step.rubs:
+            self._back = True
+            return there
+        if (step.careful and not self._swapped) or not np.isfinite(there.size):
+            there = _shortened(step, here, there)
         if not np.isfinite(there.size):
-            self._step.failed = "forces are not finite"
+            step.failed = there.unsound or "forces are not finite"
             return here
         self._before = here.error
         return there
@@ -210,21 +226,33 @@ class LargeMotion(Method[Trial]):
         step = self._step
         if step.failed:
             return End.STALLED
+        if self._back:
+            return None
         self._errors.append(there.error)
         self.begun = _report(step, there, self.begun)
         if _balanced(step, there, self._before):
             return End.SOLVED
-        if circling(self._errors, step.settings):
+        better = there.size < self._best.size
+        self._best, self._idle = (there, 0) if better else (self._best, self._idle + 1)
+        gains = self._idle < step.settings.newton.patience or not step.rubs
+        if circling(self._errors, step.settings) or not gains:
             if step.careful:
                 return End.STALLED
-            step.careful, self._errors = True, []
+            self._back = True
         return None
 
+    def followed(self, there: Trial) -> Trial:
+        """As in ``Method``; a step that becomes careful goes on from what has left least so far."""
+        if not self._back:
+            return there
+        self._step.careful, self._errors, self._idle, self._back = True, [], 0, False
+        self._before = np.inf
+        return self._best
 
-def _unsettled(step: Step, here: Trial) -> str:
+
+def _unsettled(step: Step, here: Trial, why: str = "iterations go round in a circle") -> str:
     """Why iterations have ended without a solution."""
-    many = f"{step.limit} iterations were not enough"
-    why = many if len(step.done) >= step.limit else "iterations go round in a circle"
+    why = f"{step.limit} iterations were not enough" if len(step.done) >= step.limit else why
     most = most_at(step.problem, here.forces, here.broken)
     return (
         f"{why}: {here.force:.1e} of the forces, {here.law:.1e} of the laws, {most}, and "
@@ -232,9 +260,9 @@ def _unsettled(step: Step, here: Trial) -> str:
     )
 
 
-def _following(step: Step, here: Trial, closings: NDArray[np.int64], accuracy: float) -> tuple[State, bool]:
+def _following(step: Step, here: Trial, closings: NDArray[np.int64], accuracy: float) -> tuple[State | None, bool]:
     """One iteration on, and whether a point has taken the place of another in it; of a careful step with the status that the
-    laws ask for at its end, if it can be found. closings: as in ``exchanged``."""
+    laws ask for at its end, None where there is none. closings: as in ``exchanged``."""
 
     def solved(state: State) -> State:
         return step.advanced(here.system, state, laws_of(here.system, state, step.asked), accuracy)
@@ -243,14 +271,21 @@ def _following(step: Step, here: Trial, closings: NDArray[np.int64], accuracy: f
     other = exchanged(here.system, here.state, there, closings, step.settings.newton.patience, solved)
     if other is not there:
         return other, True
-    seen = {here.state.status.tobytes()}
-    while step.careful and len(seen) < step.settings.newton.solutions:
-        wanted = wanted_status(here.system, there, step.increment, step.asked)
-        if wanted.tobytes() in seen:
-            break
-        seen.add(wanted.tobytes())
-        there = solved(here.state.with_status(wanted))
-    return there, False
+    return (_whole(step, here, there) if step.careful else there), False
+
+
+def _whole(step: Step, here: Trial, there: State) -> State | None:
+    """The solution of the problem near ``here``, status and all, from what an iteration has come to, None where none is
+    found; ``there`` itself with laws of one's own, which the searches do not know."""
+    system = here.system
+    if any(step.asked.of(pair, system) is not None for pair in system.pairs):
+        return there
+    assert step.prepared is not None
+    wanted = wanted_status(system, there, step.increment, step.asked)
+    found = solve_linearised(step.prepared, there.with_status(wanted), step.increment)
+    if found is None:  # without friction bodies that jump are led on by iterations that leave more for a while
+        return None if step.rubs else there
+    return not_adrift(step.problem, system, here.state, found, step.settings.holding.near)
 
 
 def _iterated(
@@ -318,14 +353,14 @@ def _judged(step: Step, own: Linearised, state: State, guessed: bool = False) ->
 
 
 def _tried(step: Step, here: Trial, state: State) -> Trial:
-    """Near a trial state; under a drag without a size where a cell is beyond its material there, so that less of the way is
-    tried."""
+    """Near a trial state; under a drag, and with friction, without a size where a cell is beyond its material there, so that
+    less of the way is tried."""
     try:
         return _balance(step, state, here.state)
-    except Unsound:
-        if step.drag is None:
+    except Unsound as reason:
+        if step.drag is None and not step.rubs:
             raise
-        return replace(here, state=state, size=np.inf)
+        return replace(here, state=state, size=np.inf, unsound=str(reason))
 
 
 def _shortened(step: Step, here: Trial, full: Trial) -> Trial:

@@ -47,6 +47,11 @@ class Onset:
         """``fresh`` and ``bent`` of what friction carries at most; none where nothing presses."""
         return (self.fresh / self.limit, self.bent / self.limit) if self.limit > 0.0 else (0.0, 0.0)
 
+    @property
+    def begun(self) -> float:
+        """Of what friction carries at most, the share at points that begin to slip."""
+        return (self.fresh - self.turns) / self.limit if self.limit > 0.0 else 0.0
+
 
 @dataclass(frozen=True)
 class _Points:
