@@ -16,6 +16,8 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOHDF import vtkHDFReader
 
 from abut.cli import main
 from launcher import environment
@@ -52,6 +54,25 @@ def test_pieces_of_a_run_are_the_whole(mpirun: Run, tmp_path: Path) -> None:
     expected, found = probe(one, places), probe(other, places)
     for key, values in expected.items():
         assert np.abs(found[key] - values).max() <= 1e-8 * np.abs(values).max(), key
+
+
+def test_all_steps_in_one_file(mpirun: Run, tmp_path: Path) -> None:
+    """fields.vtkhdf of two processes and of one: the same mesh, and displacements to 1e-8."""
+    job = tmp_path / "job.toml"
+    job.write_text(BLOCKS.read_text() + '\n[output]\nformats = ["vtkhdf"]\n')
+    found = []
+    for size in (1, 2):
+        result = mpirun(size, "run", job, "--output", tmp_path / str(size))
+        assert result.returncode == 0, result.stderr
+        reader = vtkHDFReader()
+        reader.SetFileName(str(tmp_path / str(size) / "fields.vtkhdf"))
+        reader.Update()
+        grid = reader.GetOutput()
+        found.append(
+            [vtk_to_numpy(grid.GetPoints().GetData()), vtk_to_numpy(grid.GetPointData().GetArray("displacement"))]
+        )
+    np.testing.assert_array_equal(found[0][0], found[1][0])
+    assert np.abs(found[0][1] - found[1][1]).max() <= 1e-8 * np.abs(found[0][1]).max()
 
 
 def _inside(grid: Any, place: NDArray[np.float64]) -> bool:

@@ -17,6 +17,18 @@ FRICTION = 0.2
 COARSE = {"[4, 16, 2]": "[2, 8, 1]", "[6, 2]": "[4, 1]", "[4, 6]": "[2, 3]"}
 
 
+def test_thirty_lines() -> None:
+    """All of the joint, its mesh and its bolt, in a job of 30 lines beside comments: two ties, and contact that is found."""
+    lines = [line for line in JOB.read_text(encoding="utf-8").splitlines() if line.strip() and line[0] != "#"]
+    assert len(lines) <= 30
+    model = load_job(JOB).model
+    assert {solid.body for solid in model.solids} == {"shank", "nut", "head", "lower", "middle", "upper"}
+    touching = [frozenset(side.rpartition(":")[2].partition(".")[0] for side in c.named) for c in model.contacts]
+    assert len(touching) == 6
+    assert [contact.kind for contact in model.contacts].count("tied") == 2
+    assert {contact.friction for contact in model.contacts if contact.kind != "tied"} == {FRICTION}
+
+
 @pytest.mark.long
 def test_bolted_joint_slips(tmp_path: Path) -> None:
     """Both faces of the plate slip at the coefficient times the bolt's tension (Coulomb; balance of the head). Half of the

@@ -35,9 +35,10 @@ def pulled(end: float) -> abut.Model:
     )
 
 
-def test_displacements_follow_the_history() -> None:
+@pytest.mark.parametrize("end", [END, 0.001])
+def test_displacements_follow_the_history(end: float) -> None:
     """F(t) L / (E A) at each time, until the top stays; the same as over a time of 1, bit for bit."""
-    long, short = abut.solve(pulled(END)), abut.solve(pulled(1.0))
+    long, short = abut.solve(pulled(end)), abut.solve(pulled(1.0))
     factors = [1 / 3, 2 / 3, 1.0, 5 / 6, 4 / 6, 4 / 6]
     for step, other, factor in zip(long.steps, short.steps, factors, strict=True):
         tops = step.displacement[MESH.nodes_of("bar.top"), 2]
@@ -90,6 +91,12 @@ TIMED: Mapping[str, tuple[str, Callable[[float], Any]]] = {
 
 def _plain(record: Any) -> dict[str, Any]:
     return {each.name: getattr(record, each.name) for each in fields(record)}
+
+
+@pytest.mark.parametrize(("times", "end"), [((0.5, 1.5), 1.0), ((0.5, 2.5), 2.0), ((1e-4, 2e-3), 1e-3)])
+def test_load_steps_after_the_end(times: tuple[float, ...], end: float) -> None:
+    with pytest.raises(abut.InputError, match=f"solve: times: expected a time from 0 to {end:g}, the end of the run"):
+        bar(solve=abut.SolveOptions(times=times, end=end))
 
 
 @pytest.mark.parametrize("what", TIMED)

@@ -43,32 +43,10 @@ def write_vtu(
     with LZMA in place of zlib, which takes several times as long.
     Raises InputError where the file cannot be written.
     """
-    from vtkmodules.util.numpy_support import numpy_to_vtk
-    from vtkmodules.vtkCommonCore import vtkPoints
-    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
-    grid = vtkUnstructuredGrid()
-    xyz = np.zeros((len(points), 3))
-    xyz[:, : points.shape[1]] = points
-    vtk_points = vtkPoints()
-    vtk_points.SetData(numpy_to_vtk(xyz, deep=True))
-    grid.SetPoints(vtk_points)
-    counts = np.concatenate([np.full(len(nodes), nodes.shape[1]) for _, nodes in blocks])
-    cells = vtkCellArray()
-    cells.SetData(
-        *_integers(
-            [np.concatenate([[0], np.cumsum(counts)]), np.concatenate([n.ravel() for _, n in blocks])], short=raw
-        )
-    )
-    kinds = np.concatenate([np.full(len(nodes), VTK_CODE[kind], np.uint8) for kind, nodes in blocks])
-    grid.SetCells(numpy_to_vtk(kinds, deep=True), cells)
-    for data, target in ((point_data, grid.GetPointData()), (cell_data or {}, grid.GetCellData())):
-        for name, values in data.items():
-            array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
-            array.SetName(name)
-            target.AddArray(array)
-    _add_texts(grid, names or {})
+    grid = cells_of(points, blocks, short=raw)
+    add_data(grid, point_data, cell_data or {}, names or {})
 
     def write(temporary: Path) -> None:
         temporary.touch()  # raises OSError with a reason where VTK would only say no
@@ -81,6 +59,44 @@ def write_vtu(
             raise OSError(f"VTK could not write {path.name}")
 
     write_file(path, write)
+
+
+def cells_of(points: NDArray[np.float64], blocks: Sequence[tuple[str, Array]], short: bool = False) -> Foreign:
+    """VTK's grid of points and cells as in ``write_vtu``; short: numbers of points in 32 bits where that is enough."""
+    from vtkmodules.util.numpy_support import numpy_to_vtk
+    from vtkmodules.vtkCommonCore import vtkPoints
+    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
+
+    grid = vtkUnstructuredGrid()
+    xyz = np.zeros((len(points), 3))
+    xyz[:, : points.shape[1]] = points
+    vtk_points = vtkPoints()
+    vtk_points.SetData(numpy_to_vtk(xyz, deep=True))
+    grid.SetPoints(vtk_points)
+    counts = np.concatenate([np.full(len(nodes), nodes.shape[1]) for _, nodes in blocks])
+    cells = vtkCellArray()
+    cells.SetData(
+        *_integers(
+            [np.concatenate([[0], np.cumsum(counts)]), np.concatenate([n.ravel() for _, n in blocks])], short=short
+        )
+    )
+    kinds = np.concatenate([np.full(len(nodes), VTK_CODE[kind], np.uint8) for kind, nodes in blocks])
+    grid.SetCells(numpy_to_vtk(kinds, deep=True), cells)
+    return grid
+
+
+def add_data(
+    grid: Foreign, point_data: Mapping[str, Array], cell_data: Mapping[str, Array], names: Mapping[str, Sequence[str]]
+) -> None:
+    """Data of a grid as in ``write_vtu``."""
+    from vtkmodules.util.numpy_support import numpy_to_vtk
+
+    for data, target in ((point_data, grid.GetPointData()), (cell_data, grid.GetCellData())):
+        for name, values in data.items():
+            array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
+            array.SetName(name)
+            target.AddArray(array)
+    _add_texts(grid, names)
 
 
 def _add_texts(grid: Foreign, names: Mapping[str, Sequence[str]]) -> None:

@@ -81,7 +81,7 @@ MEANINGS: dict[str, dict[str, str]] = {
     },
     **OF_MATERIALS,
     "SolidTable": {
-        "body": "name of the body in the mesh",
+        "body": "name of the body in the mesh; one table may leave it out: every body that no other table names",
         "material": "name of the material",
         "temperature": "uniform change of temperature that strains the body [temperature]",
         "initial_stress": "stress that the undeformed body has, xx yy zz xy (3D: xx yy zz xy yz zx), numbers or expressions "

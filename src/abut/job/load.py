@@ -22,6 +22,7 @@ from abut.job.other_names import key_called, kind_said
 from abut.job.parameters import field_names, parameters, worked_out
 from abut.job.result_fields import Named, read_fields, told, with_fields
 from abut.job.schema import EquationTable, JobFile, MeshTable, OverclosureTable
+from abut.job.solid_bodies import solid_bodies
 from abut.job.start import Start
 from abut.job.thin import with_thin
 from abut.job.times import with_shares
@@ -170,12 +171,12 @@ def _model(file: JobFile, folder: Path, refine: int, named: Named) -> tuple[Mode
     materials = materials_of(file.materials, folder)
     thin = with_thin(file, folder, _mesh(file.mesh, folder, refine))
     solids = []
-    for i, s in enumerate(file.solids):
+    for i, s, body in solid_bodies(file, thin.thick.mesh):
         if s.material not in materials:
             raise InputError(f"solids[{i}].material: no material named {s.material!r}{nearest(s.material, materials)}")
-        how = thin.integration(s.body, s.integration)
+        how = thin.integration(body, s.integration)
         given = with_fields(values(s, f"solids[{i}]", ("body", "material", "integration")), named, f"solids[{i}]")
-        solids.append(Solid(s.body, materials[s.material], integration=how, **given))
+        solids.append(Solid(body, materials[s.material], integration=how, **given))
     resolved = resolve_contacts(file.contacts, thin.thick.mesh, solids, file.model.kinematics == "finite")
     stops = [Stop(**values(s, f"stops[{i}]")) for i, s in enumerate(file.stops)]
     stopped = add_stops(resolved.mesh, stops, file.model.plane)

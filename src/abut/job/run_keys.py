@@ -79,7 +79,8 @@ RUN: dict[str, dict[str, str]] = {
         "fields": "what result files hold: fields of the bodies, and contact for the files of contact surfaces; "
         "principal-stress and max-shear (half the difference of the largest and the smallest) are left out unless they are "
         "named",
-        "formats": "vtu for ParaView; frd for CalculiX GraphiX: fields.frd, written at the end of the run",
+        "formats": "vtu: a file a step, for ParaView; vtkhdf: all steps in one, for ParaView; frd: fields.frd for "
+        "CalculiX GraphiX; the last two are written at the end of the run",
         "compression": "fast, or small: VTU files up to two fifths smaller, which take longer to write; the same numbers",
     },
     "ProbeTable": {

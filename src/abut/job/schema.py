@@ -80,7 +80,7 @@ class ModelTable(Table):
 
 
 class SolidTable(Table):
-    body: str
+    body: str | None = None
     material: str
     temperature: Number = 0.0
     integration: Annotated[str, OneOf(INTEGRATIONS)] = INTEGRATIONS[0]

@@ -95,11 +95,11 @@ class SolveOptions:
             times = tuple(checks.finite(time, "solve.times") for time in self.times or ())
         except TypeError:
             raise InputError(f"solve.times: expected numbers, got {self.times!r}") from None
-        if not times or times[0] <= 0.0 or times[-1] > self.end or any(a >= b for a, b in pairwise(times)):
+        if not times or times[0] <= 0.0 or any(a >= b for a, b in pairwise(times)):  # a model checks the last of them
             raise InputError(f"solve.times: expected increasing numbers over 0 up to {self.end:g}, got {list(times)}")
         for before, time in pairwise((0.0, *times)):
-            if time - before <= SAME * self.end:
-                least = SAME * self.end
+            if time - before <= SAME * times[-1]:
+                least = SAME * times[-1]
                 raise InputError(
                     f"solve.times: {before!r} and {time!r} are one time, as they differ by {least:g} at most; leave one out"
                 )

@@ -8,12 +8,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from abut.contact.sides import listed
+from abut.io.names import file_labels
 from abut.solution import ContactResult, FrictionResult, Step
 from abut.types import Json
 
 # Columns of history.csv after the force; those of ``more_columns`` come last.
 ENERGIES = ("loads", "supports", "contact", "stored", "friction", "plastic", "stepping")
 OF_CONTACT = ("max_pressure", "area", "max_penetration", "active")
+
+
+def contact_labels(step: Step) -> list[str]:
+    """What the names of the files of each contact begin with."""
+    return [f"contact_{label}" for label in file_labels([contact.name for contact in step.contacts])]
 
 
 def contact_summary(contact: ContactResult) -> Json:

@@ -13,7 +13,7 @@ ASIDE = "earlier"
 OPTIONAL = ("fields.frd", "modes.csv", "modes.vtu", "beams.csv", "shells.csv", FIELDS, *TABLES)
 INDEX = ("summary.json", "report.html", "history.csv", "forces.csv", "run.jsonl", "fields.pvd", *OPTIONAL)
 _OF_STEP = re.compile(r"(?:fields|shells|laminates|beams|contact_[A-Za-z0-9._-]+?)_(\d{4,7})(?:_\d{4,})?\.p?vtu")
-_OF_ALL = re.compile(r"(?:shells|laminates|beams|contact_[A-Za-z0-9._-]+)\.pvd")
+_OF_ALL = re.compile(r"(?:shells|laminates|beams|contact_[A-Za-z0-9._-]+)\.(?:pvd|vtkhdf)|fields\.vtkhdf")
 _TABLE = re.compile(r"probe_[A-Za-z0-9._-]+\.csv")
 _HEAD = b"step,factor,converged,point"  # of a probe's table; other tables are the user's
 

@@ -26,8 +26,8 @@ MATERIAL = "material"  # what materials remember, such as plastic strains
 CONTACT = "contact"  # the files of contact surfaces
 FIELDS = (*ARRAYS, MATERIAL, CONTACT)
 USUAL = ("displacement", "stress", "von-mises", "stress-error", MATERIAL, CONTACT)
-VTU, FRD = "vtu", "frd"
-FORMATS = (VTU, FRD)
+VTU, FRD, VTKHDF = "vtu", "frd", "vtkhdf"
+FORMATS = (VTU, FRD, VTKHDF)
 FAST, SMALL = "fast", "small"
 COMPRESSIONS = (FAST, SMALL)
 
@@ -44,8 +44,9 @@ class Output:
         Names out of ``abut.output.options.FIELDS``; without any of the bodies' there is no ``fields.pvd``, without
         "contact" no ``contact_*.pvd``.
     formats : sequence of str
-        "vtu" for ParaView, "frd" for CalculiX GraphiX: ``fields.frd``, all of these steps in one file, which is
-        written at the end of the run.
+        "vtu" for ParaView, a file a step; "vtkhdf" for ParaView, all of these steps in one file for the bodies,
+        ``fields.vtkhdf``, and one for each contact; "frd" for CalculiX GraphiX: ``fields.frd``, all of these steps in one
+        file. What has all steps is written at the end of the run.
     compression : str
         "fast" (zlib), or "small" (LZMA): VTU files up to two fifths smaller, which take up to seven times as long to
         write. Both hold the same numbers, and viewers read both.
@@ -87,12 +88,22 @@ class Output:
     @property
     def bodies(self) -> bool:
         """Whether VTU files of bodies are written."""
-        return VTU in self.formats and any(name in self.fields for name in (*ARRAYS, MATERIAL))
+        return VTU in self.formats and self.body_fields
 
     @property
     def contacts(self) -> bool:
         """Whether those of contact surfaces are."""
-        return VTU in self.formats and CONTACT in self.fields
+        return VTU in self.formats and self.contact_fields
+
+    @property
+    def body_fields(self) -> bool:
+        """Whether any field of bodies is asked for."""
+        return any(name in self.fields for name in (*ARRAYS, MATERIAL))
+
+    @property
+    def contact_fields(self) -> bool:
+        """Whether those of contact surfaces are."""
+        return CONTACT in self.fields
 
     @property
     def small(self) -> bool:
@@ -103,6 +114,11 @@ class Output:
     def frd(self) -> bool:
         """Whether ``fields.frd`` is."""
         return FRD in self.formats
+
+    @property
+    def vtkhdf(self) -> bool:
+        """Whether ``fields.vtkhdf`` and the like are."""
+        return VTKHDF in self.formats
 
     def with_frd(self) -> Output:
         """The same with ``fields.frd``."""

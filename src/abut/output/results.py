@@ -16,12 +16,12 @@ from abut import checks
 from abut.diagnosis.advice import remedies, unsettled
 from abut.diagnosis.cures import cure
 from abut.io.atomic import write_text
-from abut.io.names import file_labels
 from abut.io.versions import versions
 from abut.io.vtu import write_vtu
-from abut.output import forces, frd, modes, probes, responses, thin
+from abut.output import forces, frd, modes, probes, responses, thin, vtkhdf
 from abut.output.contact_rows import (
     OF_CONTACT,
+    contact_labels,
     contact_summary,
     energy_columns,
     energy_row,
@@ -55,7 +55,8 @@ def write(
     report.html, summary.json, history.csv, forces.csv, run.jsonl; fields.pvd with a VTU file a step; contact_NAME.pvd
     likewise for each contact; probe_NAME.csv for each probe; modes.csv and modes.vtu where the model asks for modes,
     harmonic.csv, transient.csv and response.vtu for responses;
-    fields.frd where ``output`` asks for it; shells.pvd, and beams.pvd with beams.csv, where there are any.
+    fields.frd, fields.vtkhdf and contact_NAME.vtkhdf where ``output`` asks for them; shells.pvd, and beams.pvd with
+    beams.csv, where there are any.
 
     Parameters
     ----------
@@ -70,7 +71,7 @@ def write(
     fields : callable, optional
         What writes the fields of a step.
     output : Output
-        Which steps and fields have VTU files, and whether there is ``fields.frd``.
+        Which steps and fields have files, and in which formats.
 
     Returns
     -------
@@ -127,12 +128,13 @@ def write_held(
     shown = [step for step in solution.steps if _wanted(solution, step, output, True)]
     if output.frd:
         frd.write(folder, solution, shown, output)
+    vtkhdf.write(folder, solution, shown, output)
     modes.write_modes(folder, solution, output.bodies)
     responses.write_responses(folder, solution, output.bodies)
     own = [*modes.names(solution, output.bodies), *responses.names(solution, output.bodies)]
-    mine = [*own, *([frd.FILE] if output.frd else [])]
-    index = [name for name in INDEX if name not in OPTIONAL or name in mine]
-    remove_others(folder, len(solution.steps), [*index, *_files(solution, shown, output)])
+    mine = [*own, *([frd.FILE] if output.frd else []), *vtkhdf.files(solution, output)]
+    index = [name for name in INDEX if name not in OPTIONAL]
+    remove_others(folder, len(solution.steps), [*index, *mine, *_files(solution, shown, output)])
     write_report(solution, folder / "report.html", origin or Origin(folder.absolute().name))
     return folder
 
@@ -165,7 +167,7 @@ def write_index(folder: Path, solution: Solution, output: Output, final: bool = 
         for kind in thin.kinds(solution.model):
             _write_collection(folder, kind, shown, [thin.file_of(kind, step) for step in shown])
     files = [_contact_files(step) for step in shown]
-    for index, label in enumerate(_contact_labels(solution.steps[-1]) if output.contacts else ()):
+    for index, label in enumerate(contact_labels(solution.steps[-1]) if output.contacts else ()):
         _write_collection(folder, label, shown, [names[index] for names in files])
     write_text(folder / forces.FILE, forces.table(solution))
     if thin.TABLE in _files(solution, shown, output):
@@ -243,17 +245,12 @@ def _files(solution: Solution, shown: Sequence[Step], output: Output) -> list[st
         tables += thin.files(solution.model, shown)
     if not output.contacts:
         return tables
-    collections = [f"{label}.pvd" for label in _contact_labels(solution.steps[-1])]
+    collections = [f"{label}.pvd" for label in contact_labels(solution.steps[-1])]
     return [*tables, *collections, *(name for step in shown for name in _contact_files(step))]
 
 
-def _contact_labels(step: Step) -> list[str]:
-    """What the names of the files of each contact begin with."""
-    return [f"contact_{label}" for label in file_labels([contact.name for contact in step.contacts])]
-
-
 def _contact_files(step: Step) -> list[str]:
-    return [f"{label}_{step.number:04d}.vtu" for label in _contact_labels(step)]
+    return [f"{label}_{step.number:04d}.vtu" for label in contact_labels(step)]
 
 
 def _step_summary(step: Step) -> Json:
@@ -272,7 +269,7 @@ def _step_summary(step: Step) -> Json:
         "balance_error": step.balance_error,
         "max_displacement": float(np.linalg.norm(step.displacement, axis=1).max()),
         "contacts": [
-            {**contact_summary(c), "file": f"{label}.pvd"} for c, label in zip(step.contacts, _contact_labels(step))
+            {**contact_summary(c), "file": f"{label}.pvd"} for c, label in zip(step.contacts, contact_labels(step))
         ],
         **energy_summary(step),
         **_stress_error(step),

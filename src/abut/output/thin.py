@@ -48,7 +48,7 @@ def files(model: Model, steps: Sequence[Step]) -> list[str]:
 
 def write_step(folder: Path, model: Model, step: Step, output: Output) -> None:
     for kind in kinds(model):
-        of = single(_grid(kind, model, step))
+        of = single(grid_of(kind, model, step))
         write_vtu(
             folder / file_of(kind, step),
             of.points,
@@ -60,7 +60,8 @@ def write_step(folder: Path, model: Model, step: Step, output: Output) -> None:
         )
 
 
-def _grid(kind: str, model: Model, step: Step) -> Grid:
+def grid_of(kind: str, model: Model, step: Step) -> Grid:
+    """Shells on their mid-surfaces, or beams as lines."""
     if kind == BEAMS:
         return grid(model, step)
     shells = model.mesh.shells if kind == SHELLS else mid_surface.laminates(model.mesh)
