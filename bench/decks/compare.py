@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 import abut
 from abut.decks.expanded import expanded
 from abut.decks.large import is_finite
+from abut.decks.points import with_points
 from abut.decks.translation import translate
 from abut.errors import AbutError, ConvergenceError, InputError
 from abut.io.deck import read_deck
@@ -155,7 +156,7 @@ Mean = tuple[list[int], NDArray[np.float64]]  # rows of points, and their weight
 
 def _rows(deck: Deck) -> dict[int, Mean]:
     """The points of the model at each node of a deck; at one of a shell or a beam those whose mean its displacement is."""
-    solid = expanded(deck, is_finite(deck))
+    solid = expanded(with_points(deck), is_finite(deck))
     numbers = np.unique(np.concatenate([block.nodes.ravel() for block in solid.blocks]))
     numbers = numbers[np.isin(numbers, solid.nodes)]
     made = {b.reference: Thin(tuple(b.nodes.tolist())) for b in solid.couplings if b not in deck.couplings} | solid.thin

@@ -256,6 +256,22 @@ def test_steady_state_dynamics_of_a_bar(tmp_path: Path) -> None:
     np.testing.assert_allclose(result.probes[0].displacement[:, 0, 0], expected, rtol=2e-3)
 
 
+def test_steady_state_dynamics_about_a_loaded_state(tmp_path: Path) -> None:
+    """Pulled a little, with NLGEOM, a bar answers as at rest, within its strain. PERTURBATION needs modes about the loaded
+    state."""
+    shaken = (
+        "*STEP\n*STEADY STATE DYNAMICS\n2000., 9000., 5, 1.\n*CLOAD\nFREE, 1, 2.\n*NODE PRINT, NSET=FREE\nU\n*END STEP"
+    )
+    pull = "*STEP, NLGEOM\n*STATIC\n*CLOAD\nFREE, 1, 1.\n*END STEP"
+    loaded = [SHAKEN.replace("*STEP", "*STEP, PERTURBATION", 1), shaken.replace("*STEP", "*STEP, PERTURBATION", 1)]
+    at_rest = answers(tmp_path, shaken)[1].probes[0].displacement[:, 0, 0]
+    found = solution(tmp_path, bar("ALL, 2, 3", pull, *loaded)).responses[0].probes[0].displacement[:, 0, 0]
+    np.testing.assert_allclose(found, at_rest, rtol=1e-3)
+    assert np.abs(found - at_rest).max() > 0.0  # of the state that is pulled
+    with pytest.raises(InputError, match="STEADY STATE DYNAMICS"):
+        solution(tmp_path, bar("ALL, 2, 3", pull, SHAKEN, loaded[1]))
+
+
 def test_everything_that_is_held_shakes_together(tmp_path: Path) -> None:
     """1 / cos(k l) at the free end of a bar whose held end moves by 1."""
     step = (

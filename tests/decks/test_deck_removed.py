@@ -50,6 +50,61 @@ def test_elements_come_back_without_strain(tmp_path: Path) -> None:
         assert u[heights == 2.0] == pytest.approx(top, abs=1e-6)  # nodes that are away follow within a billionth
 
 
+def test_elements_come_back_with_strain(tmp_path: Path) -> None:
+    """The lower half pressed by 10 alone, the upper one back with the strain that its nodes then have, none, or taken out
+    under the pressure on it and back: .02 shorter again, as though it had never gone."""
+    first, second, third = (
+        PRESSED,
+        [*REMOVE, "5, 6, 7, 8"],
+        ["*MODEL CHANGE, TYPE=ELEMENT, ADD=WITH STRAIN", "5, 6, 7, 8"],
+    )
+    job = load(tmp_path, COLUMNS + "".join(step(*lines) for lines in (first, second, third)))
+    assert not any("without strain" in note for note in job.notes)
+    solution = abut.solve(job.model)
+    assert solution.displacement[solution.model.mesh.points[:, 2] == 2.0, 2] == pytest.approx(-0.02, abs=1e-8)
+
+
+SOFTER = "*MATERIAL, NAME=OTHER\n*ELASTIC\n{}., 0.\n*DENSITY\n2.\n"
+LID = [
+    "*CLOAD",
+    *(
+        f"{n}, 3, {-10.0 * share}"
+        for n, share in zip((201, 202, 203, 211, 212, 213, 221, 222, 223), (1, 2, 1, 2, 4, 2, 1, 2, 1))
+    ),
+]
+
+
+@pytest.mark.parametrize(("first", "shorter"), [(False, (-0.08, -0.12)), (True, (-0.12, -0.12))])
+def test_materials_change(first: bool, shorter: tuple[float, float], tmp_path: Path) -> None:
+    """The upper half is half as stiff from the second step on, or from the first: all of its strain counts."""
+    text = COLUMNS.replace(
+        "*NSET, NSET=BOTTOM", "*ELSET, ELSET=UPPER\n5,6,7,8\n" + SOFTER.format(500) + "*NSET, NSET=BOTTOM", 1
+    )
+    change = ["*CHANGE SOLID SECTION, ELSET=UPPER, MATERIAL=OTHER"]
+    steps = step(*(change if first else []), *LID) + step(*([] if first else change), *LID)
+    solution = abut.solve(load(tmp_path, text + steps).model)
+    top = solution.model.mesh.points[:, 2] == 2.0
+    ends = [next(s for s in solution.steps if abs(s.factor - end) < 1e-9).displacement[top, 2] for end in (0.5, 1.0)]
+    for u, wanted in zip(ends, shorter):
+        assert u == pytest.approx(wanted, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("card", "more", "says"),
+    [
+        ("MATERIAL=NONE", [], "no material named 'NONE'"),
+        ("MATERIAL=OTHER", PRESSED, "elements that change have no pressures"),
+        ("MATERIAL=OTHER", [*REMOVE, "5"], "elements that change twice, or go and change"),
+    ],
+)
+def test_changes_that_are_refused(card: str, more: list[str], says: str, tmp_path: Path) -> None:
+    text = COLUMNS.replace(
+        "*NSET, NSET=BOTTOM", "*ELSET, ELSET=UPPER\n5,6,7,8\n" + SOFTER.format(500) + "*NSET, NSET=BOTTOM", 1
+    )
+    with pytest.raises(InputError, match=says):
+        load(tmp_path, text + step(*LID) + step(f"*CHANGE SOLID SECTION, ELSET=UPPER, {card}", *more))
+
+
 @pytest.mark.parametrize(
     ("steps", "words"),
     [
@@ -57,7 +112,7 @@ def test_elements_come_back_without_strain(tmp_path: Path) -> None:
         (([*REMOVE, "TOPS"],), "no element set named 'TOPS'"),
         ((["*MODEL CHANGE, TYPE=ELEMENT, ADD", "5"],), "element 5 is there already"),
         ((["*MODEL CHANGE, TYPE=ELEMENT", "5"],), "expected one of ADD and REMOVE"),
-        (([*REMOVE, "5"], ["*MODEL CHANGE, TYPE=ELEMENT, ADD=WITH STRAIN", "5"]), "elements come back without strain"),
+        (([*REMOVE, "5"], ["*MODEL CHANGE, TYPE=ELEMENT, ADD=X", "5"]), "ADD=X: expected STRAIN FREE, WITH STRAIN"),
         (([*REMOVE, "5", "*MODEL CHANGE, TYPE=ELEMENT, ADD", "5"],), "taken out and brought back in one step"),
     ],
 )

@@ -103,6 +103,27 @@ def test_large_strains_count_from_the_place_of_the_return():
     assert np.abs(solution.steps[1].stress[x > 0.7]).max() == 0.0
 
 
+@pytest.mark.parametrize(("strained", "stretch"), [(True, 3.0), (False, 1.5)])
+def test_strained_bodies_come_back_as_they_were_laid_out(strained, stretch):
+    """Two bars, pulled to twice and then three times their length, one away up to twice: it carries the stress of three
+    times its length, or of one and a half."""
+    mesh = make.join(
+        {name: make.rectangle((x, x + 1.0), (0.0, 1.0), (2, 2)) for name, x in (("one", 0.0), ("two", 2.0))}
+    )
+    sides = [abut.Support(f"{bar}.bottom", x=0, y=0) for bar in ("one", "two")]
+    model = abut.Model(
+        mesh,
+        [abut.Solid(bar, abut.Hencky(YOUNG, 0.0)) for bar in ("one", "two")],
+        [*sides, *(abut.Support(f"{bar}.top", y=2.0) for bar in ("one", "two"))],
+        plane="strain",
+        kinematics="finite",
+        removals=[abut.Removal("two", until=0.25, since=0.5, strained=strained)],
+        solve=abut.SolveOptions(times=(0.25, 0.5, 0.75, 1.0)),
+    )
+    last = abut.solve(model).steps[-1].stress[mesh.nodes_of("two"), 1]
+    assert last == pytest.approx(YOUNG * np.log(stretch) / stretch, rel=1e-5)
+
+
 def test_warmth_counts_from_the_return():
     """Held between walls, heated evenly by 100: half of the way before the return, half after it."""
     mesh = make.join(

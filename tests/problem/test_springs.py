@@ -9,7 +9,7 @@ import pytest
 
 import abut
 from abut.errors import InputError
-from abut.mesh.make import box, join
+from abut.mesh.make import box, join, rectangle
 
 YOUNG, LENGTH, AREA = 1000.0, 4.0, 2.0
 EXACT = 1e-8  # stresses are uniform, and springs integrated exactly
@@ -87,6 +87,32 @@ def test_two_bars_with_a_spring_between_their_ends():
     assert solution.steps[-1].springs["link"] == pytest.approx([5.0, 0.0, 0.0], abs=1e-7)
 
 
+def _plate_on_a_spring(point, law, force):
+    """A stiff square that a spring to a fixed point holds, moved along y."""
+    mesh = join({"square": rectangle([0, 1], [0, 1], cells=[1, 1])})
+    mesh = replace(mesh, node_sets={"corner": mesh.nodes_of("square.bottom")[:1], "all": np.arange(4)})
+    return abut.Model(
+        mesh,
+        [abut.Solid("square", abut.Hencky(1e9, 0.0))],
+        [abut.Support("all", x=0)],
+        [abut.Traction("square.top", (0.0, force))],
+        plane="strain",
+        kinematics="finite",
+        springs=[abut.Spring("spring", "corner", point=point, along=law)],
+    )
+
+
+@pytest.mark.parametrize("law", [50.0, ((-9.0, -450.0), (9.0, 450.0))], ids=["stiffness", "table"])
+def test_a_spring_turns_with_its_ends_at_large_displacements(law):
+    """Moved by v from a point a aside and b below: the force along v is k (l - l_0) (b + v) / l, l^2 = a^2 + (b + v)^2."""
+    arm, low, rise = 2.0, 1.0, 3.0
+    length = np.hypot(arm, low + rise)
+    pull = 50.0 * (length - np.hypot(arm, low)) * np.array([-arm, low + rise]) / length
+    solution = abut.solve(_plate_on_a_spring((-arm, -low), law, pull[1]))
+    assert solution.displacement[:, 1] == pytest.approx(rise, rel=1e-6)
+    assert solution.steps[-1].springs["spring"] == pytest.approx([pull[0], -pull[1]], rel=1e-6)
+
+
 def test_weak_springs_are_judged_by_what_they_carry():
     """A column that nothing else holds along z, pulled by almost nothing, or by all."""
     weak = abut.Spring("weak", "column.bottom", z=1e-3, weak=True)
@@ -115,7 +141,7 @@ def test_refused(given, words):
 
 @pytest.mark.parametrize("kinematics", ["small", "finite"])
 def test_to_a_fixed_point(kinematics):
-    """Springs at the nodes of the foot along (3, 0, 4) / 5 carry 10 upward, and three quarters of that across."""
+    """Springs at the nodes of the foot along (3, 0, 4) / 5 carry 10 upward, and about three quarters of that across."""
     model = column([], kinematics=kinematics)
     mesh = model.mesh
     foot = {f"foot-{i}": [node] for i, node in enumerate(mesh.nodes_of("column.bottom"))}
@@ -132,7 +158,11 @@ def test_to_a_fixed_point(kinematics):
     )
     solution = abut.solve(model)
     carried = sum(solution.steps[-1].springs[name] for name in sets)
-    assert carried == pytest.approx([7.5, 0.0, 10.0], abs=1e-6)
+    sunk = {n: solution.displacement[at[0], 2] if kinematics == "finite" else 0.0 for n, at in sets.items()}
+    across = sum(
+        solution.steps[-1].springs[name][2] * 3.0 / (4.0 + sunk[name]) for name in sets
+    )  # they turn with the foot
+    assert carried == pytest.approx([across, 0.0, 10.0], abs=1e-6)
 
 
 @pytest.mark.parametrize(

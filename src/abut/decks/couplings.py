@@ -282,7 +282,7 @@ def _points(groups: Groups, bound: Bound) -> tuple[str, tuple[float, ...] | None
     """Surface or node set in the mesh, and weights of its points where they are given."""
     if bound.distributing and bound.surface and groups.deck.surfaces[bound.surface].nodes is None:
         return groups.surface(bound.surface), None
-    nodes = np.intersect1d(nodes_of(groups.deck, groups, bound), groups.used)
+    nodes = groups.those_used(nodes_of(groups.deck, groups, bound))
     if not len(nodes):
         raise DeckError(bound.place, "*COUPLING: none of its nodes belongs to an element; couple nodes of the body")
     name = groups.node_set(nodes, f"{bound.name} nodes")
@@ -297,7 +297,7 @@ def nodes_of(deck: Deck, groups: Groups, bound: Bound) -> Numbers:
     if bound.surface:
         surface = deck.surfaces[bound.surface]
         found.append(_face_nodes(deck, groups, bound.surface) if surface.nodes is None else surface.nodes)
-    own = np.intersect1d([bound.reference], groups.used) if not bound.distributing else bound.nodes[:0]
+    own = groups.those_used(np.array([bound.reference])) if not bound.distributing else bound.nodes[:0]
     return np.unique(np.concatenate([*found, own]))
 
 

@@ -22,17 +22,18 @@ def in_span(deck: Deck, pair: Pair, contact: Contact) -> Contact:
 
 
 def removals(deck: Deck, parts: Mapping[str, Piece]) -> Iterator[Removal]:
-    """Of the bodies, by name: at once as a step begins, and back without strain, as in CalculiX."""
+    """Of the bodies, by name: at once as a step begins, and back without strain or with it, as in CalculiX."""
     starts = (0.0, *ends(deck))
     for absence in deck.absences:
         for name, piece in parts.items():
             if np.isin(piece.elements, absence.elements).all():
                 for away, *back in absence.spans:
-                    yield Removal(name, starts[away], since=starts[back[0]] if back else None)
+                    since = starts[back[0]] if back else None
+                    yield Removal(name, starts[away], since=since, strained=absence.strained)
 
 
 def passing_notes(deck: Deck) -> list[str]:
     """That elements come back without strain."""
-    back = [absence for absence in deck.absences if any(len(span) > 1 for span in absence.spans)]
+    back = [a for a in deck.absences if any(len(span) > 1 for span in a.spans) and not a.strained]
     count = sum(len(absence.elements) for absence in back)
     return [f"*MODEL CHANGE: {count} elements come back without strain, where their nodes are then"] if back else []

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -83,12 +83,6 @@ def _check(deck: Deck, spring: Spring, plane: str | None) -> None:
         )
     if plane is not None and 3 in spring.directions:
         raise DeckError(spring.place, f"{spring.title}: direction 3: the model is plane; take the spring out")
-    if spring.code == "SPRINGA" and any(step.finite for step in deck.steps):
-        raise DeckError(
-            spring.place,
-            f"{spring.title}: SPRINGA turns with its ends with NLGEOM, abut's springs keep their direction; give SPRING2 "
-            "where ends do not turn, or solve with --ignore NLGEOM",
-        )
     for node in np.unique(spring.ends).tolist():
         if node in deck.references:
             raise DeckError(
@@ -106,9 +100,8 @@ def _check(deck: Deck, spring: Spring, plane: str | None) -> None:
 
 def _translated(scene: _Scene, spring: Spring) -> Iterator[ModelSpring]:
     between: list[tuple[int, int, int]] = []
-    ground: dict[
-        tuple[float, ...], list[tuple[int, int]]
-    ] = {}  # by the point that the other end is, () where it has none
+    # By the point that the other end is, () where it has none, and whether that is the first one
+    ground: dict[tuple[tuple[float, ...], bool], list[tuple[int, int]]] = {}
     used = set(scene.groups.used.tolist())
     for number, ends in zip(spring.elements.tolist(), spring.ends.tolist()):
         inside = [node for node in ends if node in used]
@@ -126,15 +119,10 @@ def _translated(scene: _Scene, spring: Spring) -> Iterator[ModelSpring]:
         point: tuple[float, ...] = ()
         if spring.code == "SPRINGA" and other is not None:
             point = tuple(coordinates(scene.deck, np.array([other]))[0, : scene.dim].tolist())
-        elif other is not None and ends[0] == other and not isinstance(spring.law, float):
-            raise DeckError(
-                spring.place,
-                f"{spring.title}: element {number}: with NONLINEAR give the node that moves first, then the fixed one",
-            )
-        ground.setdefault(point, []).append((number, inside[0]))
-    for point, each in ground.items():
+        ground.setdefault((point, not point and ends[0] == other), []).append((number, inside[0]))
+    for (point, back), each in ground.items():
         for members in _apart([(number, node, -1) for number, node in each]):
-            yield _to_ground(scene, spring, members, point)
+            yield _to_ground(scene, _reversed(spring) if back else spring, members, point)
     for members in _apart(between):
         yield _between(scene, spring, members)
 
@@ -161,6 +149,13 @@ def _apart(elements: Sequence[tuple[int, int, int]]) -> list[list[tuple[int, int
         else:
             groups.append([element])
     return groups
+
+
+def _reversed(spring: Spring) -> Spring:
+    """With the law of the second end's displacement, where it is given by that of the first one, which is the ground."""
+    if isinstance(spring.law, float):
+        return spring
+    return replace(spring, law=tuple((-u, -f) for u, f in reversed(spring.law)))
 
 
 def _to_ground(

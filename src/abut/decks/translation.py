@@ -31,6 +31,7 @@ from abut.decks.overclosure import overclosure_notes, own_laws, softened
 from abut.decks.passing import in_span, passing_notes, removals
 from abut.decks.plane import plane_of, thickness
 from abut.decks.plane_solids import plane_notes
+from abut.decks.points import with_points
 from abut.decks.response import responses, without_shaking
 from abut.decks.rigid import join, rigid_bodies, with_parts_coupled
 from abut.decks.rubber import of_rubber, rubber_notes
@@ -102,6 +103,7 @@ def load_deck(path: Path, ignore: Collection[str] = (), soft: bool = False) -> T
 
 def translate(deck: Deck, soft: bool = False) -> Translation:
     """The model of a deck, one time axis over all its steps. Raises InputError for what a model cannot hold."""
+    deck = with_points(deck)
     _check_something_is_there(deck)
     reasons = Reasons()
     for error in unsupported(deck):
@@ -205,7 +207,7 @@ def _check_something_is_there(deck: Deck) -> None:
     if not deck.steps:
         raise InputError("no *STEP with *STATIC in the deck, or none left; abut solves these")
     if not deck.blocks:
-        raise InputError("the deck has no *ELEMENT cards of solids, shells or beams; add a body, even for springs")
+        raise InputError("the deck has no *ELEMENT cards of solids, shells, beams or springs; add a body")
 
 
 def _steps(deck: Deck, finite: bool) -> SolveOptions:

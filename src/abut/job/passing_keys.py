@@ -20,5 +20,6 @@ PASSING: dict[str, dict[str, str]] = {
         "until": "time up to which it is there; 0: it is not there at the start",
         "released": "time at which the forces that it exerts are gone; left out: at once",
         "since": "time from which on it is there again, without stress, where its nodes are then; left out: never",
+        "strained": "true: it is back as it was laid out, strained by all the displacement of its nodes",
     },
 }

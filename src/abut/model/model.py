@@ -185,7 +185,9 @@ class Model:
         check_connectors(self.mesh, self.connectors, self.referenced, self.finite)
         others = (*self.physics, *self.modes, *self.connectors)
         check_removals(self.mesh, self.removals, self.materials, self.preloads, others)
-        object.__setattr__(self, "loads", loads_while_there(self.mesh, self.loads, self.removals, self.materials))
+        object.__setattr__(
+            self, "loads", loads_while_there(self.mesh, self.loads, self.removals, self.materials, self.equations)
+        )
         self.opened, self.dofs  # noqa: B018 - sides of contacts go as a whole, names are there once
         check_kinematics(self.kinematics, self.solids)
         moving = moving_points(self.mesh, self.rigid, self.couplings)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from abut import checks
 from abut.contact.sides import bodies_of
@@ -15,7 +16,7 @@ from abut.errors import InputError
 from abut.materials.temperature import OverTemperature
 from abut.mesh.mesh import Mesh
 from abut.model.body_forces import BodyForce, Centrifugal, Gravity, Load
-from abut.model.conditions import Amplitude, History
+from abut.model.conditions import Amplitude, Equation, History
 from abut.model.contact import SECOND, Contact
 from abut.model.hold import END
 from abut.model.loads import Force, NodalForce, Pressure, Traction
@@ -23,6 +24,7 @@ from abut.model.penetration import Penetration
 from abut.model.preload import Preload
 from abut.model.step_ends import SAME
 
+Indices = NDArray[np.int64]
 RAMP = ((0.0, 0.0), (END, 1.0))
 
 
@@ -32,7 +34,7 @@ class Removal:
 
     It is there up to ``until``. Then the forces that it exerts on what it shares nodes with, or is tied to, go down in a
     straight line, to none at ``released``; its contacts and the loads on it are gone at once. From ``since`` on it is there
-    again, where its nodes are then, without strain, stress or history.
+    again, without history, and without strain and stress where its nodes are then, or ``strained``.
 
     Parameters
     ----------
@@ -44,6 +46,8 @@ class Removal:
         When its forces are gone; at once where left out.
     since : float, optional
         Time from which on it is there again; it does not come back where left out.
+    strained : bool
+        Whether it comes back as it was laid out: with the strain of all the displacement that its nodes have.
 
     Raises
     ------
@@ -61,6 +65,7 @@ class Removal:
     until: float = 0.0
     released: float | None = None
     since: float | None = None
+    strained: bool = False
 
     def __post_init__(self) -> None:
         checks.text(self.body, "removal: body")
@@ -68,6 +73,7 @@ class Removal:
         for name in ("until", "released", "since"):
             if name == "until" or getattr(self, name) is not None:
                 checks.finite(getattr(self, name), f"{where}: {name}")
+        checks.instance(self.strained, bool, f"{where}: strained", "true or false")
         if self.until <= SAME and self.since is None:
             raise InputError(f"{where}: it is not there at any time; give until or since, or leave the body out")
         back = math.inf if self.since is None else self.since
@@ -172,32 +178,41 @@ def _tightened(mesh: Mesh, preload: Preload) -> set[str]:
 
 
 def loads_while_there(
-    mesh: Mesh, loads: Sequence[Load], removals: Sequence[Removal], solids: Iterable[str]
+    mesh: Mesh,
+    loads: Sequence[Load],
+    removals: Sequence[Removal],
+    solids: Iterable[str],
+    equations: Sequence[Equation] = (),
 ) -> tuple[Load, ...]:
-    """Loads, of which those on bodies that go act while these are there; solids: bodies that deform. Raises InputError for
-    surfaces that lie on bodies that go and on others."""
-    every = (_split(mesh, load, removals, solids, f"loads[{i}]") for i, load in enumerate(loads))
+    """Loads, of which those on bodies that go act while these are there, but for forces at nodes in ``equations``; solids:
+    bodies that deform. Raises InputError for surfaces that lie on bodies that go and on others."""
+    terms = [term.on for equation in equations for term in equation.terms] if removals else []
+    at = [np.array([on]) if isinstance(on, int) else mesh.nodes_of(on) for on in dict.fromkeys(terms)]
+    joined = np.concatenate([np.empty(0, np.int64), *at])
+    every = (_split(mesh, load, removals, solids, joined, f"loads[{i}]") for i, load in enumerate(loads))
     return tuple(load for parts in every for load in parts)
 
 
-def _split(mesh: Mesh, load: Any, removals: Sequence[Removal], solids: Iterable[str], where: str) -> Iterator[Load]:
+def _split(
+    mesh: Mesh, load: Any, removals: Sequence[Removal], solids: Iterable[str], joined: Indices, where: str
+) -> Iterator[Load]:
     load = replace(load, amplitude=as_given(load.amplitude)) if isinstance(load.amplitude, While) else load
     passing = {removal.body for removal in removals}
     if isinstance(load, (Gravity, Centrifugal, BodyForce)) and load.on is None and passing:
         yield from (_gated(replace(load, on=body), {body}, removals) for body in solids)
         return
-    yield _gated(load, _bodies(mesh, load, passing, where), removals)
+    yield _gated(load, _bodies(mesh, load, passing, joined, where), removals)
 
 
-def _bodies(mesh: Mesh, load: Any, passing: set[str], where: str) -> set[str]:
-    """Of a load, those that it goes with."""
+def _bodies(mesh: Mesh, load: Any, passing: set[str], joined: Indices, where: str) -> set[str]:
+    """Of a load, those that it goes with. joined: nodes that equations join with others."""
     if isinstance(load, (Gravity, Centrifugal, BodyForce)):
         return {str(load.on)}
     if isinstance(load, (Pressure, Traction, Force)) and load.on in mesh.surfaces:
         return _alone(bodies_of(mesh, load.on), passing, f"{where}.on: '{load.on}'")
     if isinstance(load, NodalForce) and passing:
         nodes = mesh.nodes_of(load.on)
-        others = np.concatenate([mesh.nodes_of(body) for body in mesh.bodies if body not in passing])
+        others = np.concatenate([joined, *(mesh.nodes_of(body) for body in mesh.bodies if body not in passing)])
         if not np.isin(nodes, others).any():
             return _alone({b for b in passing if np.isin(nodes, mesh.nodes_of(b)).any()}, passing, f"{where}.on")
     return set()

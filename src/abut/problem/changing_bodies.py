@@ -42,7 +42,8 @@ class Passing:
 
 @dataclass(frozen=True)
 class ChangingBodies:
-    """All bodies. always: those that stay; a body that came back is one at rest where its nodes were then."""
+    """All bodies. always: those that stay; a body that came back is one at rest where its nodes were then, strained ones as
+    they were laid out."""
 
     model: Model
     loads: Loads
@@ -128,7 +129,7 @@ class ChangingBodies:
         """A body that is there: as it is at rest, its displacement from there, what it has been heated by since, and its
         history."""
         history = {part.body: before[part.body]} if part.body in before else None
-        if removal is None:
+        if removal is None or removal.strained:
             return part.solids, moved, change, history
         origin = np.zeros_like(moved)
         origin[part.nodes] = before[ORIGIN + part.body]

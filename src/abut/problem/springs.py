@@ -22,12 +22,14 @@ ONE = 1e-12  # distance of both ends of a spring, over the model's size, that gi
 @dataclass(frozen=True)
 class SpringRows:
     """Springs of one law, side by side. rows: (n, dim n_points) displacements by those of the points; share: (n,) of the
-    law that each has; law: a stiffness or a table."""
+    law that each has; law: a stiffness or a table; turning: of springs that turn with their ends the way (n, dim) from
+    one end to the other at rest, and what ends move apart by, (dim n, dim n_points) times displacements."""
 
     spring: Spring
     rows: Sparse
     share: Array
     law: float | Table
+    turning: tuple[Array, Sparse] | None = None
 
     def forces(self, moved: Array) -> tuple[Array, Array]:
         """Of all n springs, against displacements (n,), and their slopes."""
@@ -37,6 +39,32 @@ class SpringRows:
         slopes = np.diff(f) / np.diff(u)
         piece = np.clip(np.searchsorted(u, moved, side="right") - 1, 0, len(slopes) - 1)
         return self.share * (f[piece] + slopes[piece] * (moved - u[piece])), self.share * slopes[piece]
+
+    def pull(self, displacement: Array) -> Array:
+        """Forces (dim n_points,) that hold displacements (dim n_points,)."""
+        if self.turning is None:
+            return np.asarray(self.rows.T @ self.forces(self.rows @ displacement)[0])
+        along, _, force, _ = self._turned(*self.turning, displacement)
+        return np.asarray(self.turning[1].T @ (force[:, None] * along).ravel())
+
+    def stiffness(self, displacement: Array) -> Sparse:
+        """Their derivative (dim n_points, dim n_points): of a spring that turns k d d^T + (f / l) (1 - d d^T)."""
+        if self.turning is None:
+            return self.rows.T @ sp.diags(self.forces(self.rows @ displacement)[1]) @ self.rows
+        along, length, force, slope = self._turned(*self.turning, displacement)
+        both = along[:, :, None] * along[:, None, :]
+        across = np.eye(along.shape[1]) - both
+        blocks = slope[:, None, None] * both + (force / length)[:, None, None] * across
+        n = len(blocks)
+        apart = self.turning[1]
+        return apart.T @ sp.bsr_matrix((blocks, np.arange(n), np.arange(n + 1))) @ apart
+
+    def _turned(self, rest: Array, apart: Sparse, displacement: Array) -> tuple[Array, Array, Array, Array]:
+        """Of n springs that turn: directions (n, dim), lengths, forces and slopes (n,)."""
+        reach, size = rest + (apart @ displacement).reshape(rest.shape), np.linalg.norm(rest, axis=1)
+        length = np.maximum(np.linalg.norm(reach, axis=1), ONE * size)
+        force, slope = self.forces(length - size)
+        return reach / length[:, None], length, force, slope
 
 
 @dataclass(frozen=True)
@@ -54,20 +82,20 @@ class Springs:
         if not model.springs:
             return None
         parts = [part for spring in model.springs for part in _parts(model, spring)]
-        return cls(model, parts, all(spring.linear for spring in model.springs))
+        return cls(model, parts, all(isinstance(part.law, float) and part.turning is None for part in parts))
 
     def evaluate(self, before: Motion, now: Motion) -> Share:
         """Force, tangent and history at a state, as in ``Term``."""
         total = np.zeros(len(now.displacement))
         for part in self.parts:
-            total += part.rows.T @ part.forces(part.rows @ now.displacement)[0]
+            total += part.pull(now.displacement)
         return Share(total, self.tangent(now.displacement))
 
     def tangent(self, displacement: Array) -> Tangent:
         """At displacements (dim n_points,)."""
         slope = sp.csr_matrix((len(displacement),) * 2)
         for part in self.parts:
-            slope = slope + part.rows.T @ sp.diags(part.forces(part.rows @ displacement)[1]) @ part.rows
+            slope = slope + part.stiffness(displacement)
         return MatrixTangent(slope.tocsr())
 
     def resistance(self, motions: Array) -> Array:
@@ -83,8 +111,7 @@ class Springs:
         """By spring the nodal forces (n_points, dim) on what it is on."""
         found: dict[str, Array] = {}
         for part in self.parts:
-            force, _ = part.forces(part.rows @ displacement)
-            nodal = -(part.rows.T @ force).reshape(-1, self.model.dim)
+            nodal = -part.pull(displacement).reshape(-1, self.model.dim)
             found[part.spring.name] = found.get(part.spring.name, np.zeros_like(nodal)) + nodal
         return found
 
@@ -110,7 +137,9 @@ def _parts(model: Model, spring: Spring) -> list[SpringRows]:
                 shapes = -shapes
             directions = _line(model, spring) if key == "along" else directions + np.eye(dim)["xyz".index(key)]
         rows = sum(sp.kron(sp.diags(directions[:, a]) @ shapes, np.eye(dim)[[a]], format="csr") for a in range(dim))
-        result.append(SpringRows(spring, rows.tocsr(), share, law))
+        turning = key == "along" and model.finite
+        moving = (_reach(model, spring), sp.kron(shapes, np.eye(dim), format="csr")) if turning else None
+        result.append(SpringRows(spring, rows.tocsr(), share, law, moving))
     return result
 
 
@@ -118,10 +147,15 @@ def _picks(nodes: Array, count: int) -> Sparse:
     return sp.csr_matrix((np.ones(len(nodes)), (np.arange(len(nodes)), nodes)), shape=(len(nodes), count))
 
 
-def _line(model: Model, spring: Spring) -> Array:
+def _reach(model: Model, spring: Spring) -> Array:
+    """(n, dim) from where a spring is on to its other end."""
     mesh = model.mesh
     far = mesh.points[mesh.nodes_of(spring.to)] if spring.to else np.array(spring.point)
-    away = far - mesh.points[mesh.nodes_of(spring.on)]
+    return np.asarray(far - mesh.points[mesh.nodes_of(spring.on)])
+
+
+def _line(model: Model, spring: Spring) -> Array:
+    mesh, away = model.mesh, _reach(model, spring)
     length = np.linalg.norm(away, axis=1)
     if (length <= ONE * np.ptp(mesh.points, axis=0).max()).any():
         raise InputError(f"spring '{spring.name}': along: both ends are at one point; give x, y or z")

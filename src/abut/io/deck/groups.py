@@ -95,6 +95,12 @@ class Groups:
         self._rows: dict[str, Rows] = {}
         self._named_sets = {np.intersect1d(n, self.used).tobytes(): name for name, n in deck.node_sets.items()}
 
+    def those_used(self, nodes: Numbers) -> Numbers:
+        """Of some nodes those of elements, each once, in order."""
+        nodes = np.unique(nodes)
+        at = np.minimum(np.searchsorted(self.used, nodes), len(self.used) - 1)
+        return nodes[self.used[at] == nodes] if len(self.used) else nodes[:0]
+
     def body(self, name: str, elements: Numbers) -> str:
         parts: dict[str, list[Numbers]] = {}
         for block in self.deck.blocks:

@@ -10,6 +10,7 @@ import numpy as np
 
 from abut.io.deck.assembly import without_parts
 from abut.io.deck.cards import Card, read_cards
+from abut.io.deck.changed_sections import with_changed_sections
 from abut.io.deck.contact_cards import general_contact, pairs
 from abut.io.deck.coupling_cards import couplings
 from abut.io.deck.friction_cards import friction_notes, without_tied_friction
@@ -31,7 +32,7 @@ from abut.io.deck.model_cards import (
 from abut.io.deck.multipoint_cards import multipoint_notes
 from abut.io.deck.output_cards import requests
 from abut.io.deck.reasons import DeckError, Reasons
-from abut.io.deck.record import Amplitude, Deck, Prescribed
+from abut.io.deck.record import Amplitude, Deck, Material, Prescribed
 from abut.io.deck.references import with_references
 from abut.io.deck.removed_elements import absences, gone, without
 from abut.io.deck.repeated import repeated_members, without_repeated
@@ -40,6 +41,7 @@ from abut.io.deck.shell_cards import nodal_thickness, normals
 from abut.io.deck.spring_cards import springs
 from abut.io.deck.step_cards import KIND, amplitudes, prescribed, split_steps, steps
 from abut.io.deck.supported import NEEDED, opens, sift
+from abut.io.deck.user_materials import with_elastic_laws
 
 ALONE = "shells and beams are read with the whole deck only; run the deck itself, or give job files a mesh of solids"
 MESH = ("NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "SOLIDSECTION")
@@ -51,7 +53,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
     Raises InputError with card, file, line and cure for what abut does not honour and for what cannot be read."""
     notes: list[str] = []
     reasons = Reasons()
-    every, modes = without_modes(_cards(path, notes, reasons), ignore)
+    every, modes = without_modes(with_elastic_laws(_cards(path, notes, reasons), notes), ignore)
     notes += modes.notes if modes is not None else ()
     sifted = sift(without_tied_friction(every, notes), reasons, ignore)
     if not sifted.plain:
@@ -61,6 +63,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
     mesh = mesh_cards(cards, notes, reasons)
     known = amplitudes(cards, reasons)
     pair_list = pairs(cards, mesh, reasons)
+    made_of = materials(cards, reasons)
     general = general_contact(cards, reasons)
     fixed = _fixed(outside, mesh, known, notes, reasons)
     history, known = with_interferences(
@@ -75,7 +78,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
         node_sets=mesh.node_sets.by_name(),
         element_sets=mesh.element_sets.by_name(),
         surfaces={surface.name: surface for surface in mesh.surfaces.values()},
-        sections=sections(cards, mesh, materials(cards, reasons), reasons),
+        sections=sections(cards, mesh, made_of, reasons),
         pairs=pair_list,
         general=general,
         equations=equations(cards, mesh, reasons),
@@ -100,11 +103,20 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
         requests=requests(sifted.requests),
         modes=opened(modes, Scene(mesh, pair_list, known), reasons),
     )
+    return with_references(_changing(deck, groups, mesh, made_of, reasons))
+
+
+def _changing(
+    deck: Deck, groups: Sequence[Sequence[Card]], mesh: MeshCards, known: Mapping[str, Material], reasons: Reasons
+) -> Deck:
+    """The deck with what goes, comes and changes between its steps. Raises InputError for all of ``reasons``."""
     away = absences(groups, mesh, reasons)
     reasons.tell()
     never = gone(away)
     passing = tuple(absence for absence in away if not np.isin(absence.elements, never).all())
-    return with_references(replace(without(deck, never), absences=passing))
+    deck = with_changed_sections(replace(without(deck, never), absences=passing), groups, mesh, known, reasons)
+    reasons.tell()
+    return deck
 
 
 def read_mesh_only(path: Path) -> Deck:

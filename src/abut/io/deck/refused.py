@@ -48,7 +48,6 @@ REFUSED: dict[str, str] = {
     "CFLUX": f"heat flux belongs to heat transfer, which abut does not solve{_THERMAL}",
     "CHANGE CONTACT TYPE": f"contact that changes between steps is not supported{_STATE}",
     "CHANGE MATERIAL": f"materials that change between steps are not supported{_STATE}",
-    "CHANGE SOLID SECTION": f"materials that change between steps are not supported{_STATE}",
     "COHESIVE BEHAVIOR": "cohesive contact is not supported; tie the surfaces (*TIE), or let them touch",
     "CONSTRAINT": f"a constraint of the design {_OPTIMISED}",
     "CONTACT EXCLUSIONS": "exclusions are not read; name the surfaces that touch in *CONTACT PAIR",

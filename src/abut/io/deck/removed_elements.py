@@ -14,6 +14,7 @@ from abut.io.deck.reasons import Reasons
 from abut.io.deck.record import Deck, Faces, Numbers, Prescribed
 
 ON_ELEMENTS = ("pressure", "gravity", "centrifugal")
+STRAINED = "WITHSTRAIN"
 EMPTY = np.empty(0, np.int64)
 
 
@@ -26,23 +27,29 @@ def absences(groups: Sequence[Sequence[Card]], mesh: MeshCards, reasons: Reasons
     """Elements that steps take out and bring back, those together that do so in the same steps; ``groups``: the cards of
     each step. ``reasons`` gets what is no such thing."""
     spans: dict[int, list[list[int]]] = {}  # of each element: the step from which on it is away, and that of its return
+    strained: set[int] = set()
     for number, group in enumerate(groups):
         for card in group:
             if card.key == "MODELCHANGE" and of_elements(card):
                 with reasons.gathered():
                     for element, line in _members(card, mesh):
                         _note(spans.setdefault(element, []), number, card, line, element)
-    alike: dict[tuple[tuple[int, ...], ...], list[int]] = {}
+                        strained |= {element} if key(card.get("ADD") or "") == STRAINED else set()
+    alike: dict[tuple[bool, tuple[tuple[int, ...], ...]], list[int]] = {}
     for element, found in spans.items():
-        alike.setdefault(tuple(map(tuple, found)), []).append(element)
-    return tuple(Absence(np.array(sorted(members), np.int64), found) for found, members in alike.items() if found)
+        alike.setdefault((element in strained, tuple(map(tuple, found))), []).append(element)
+    return tuple(
+        Absence(np.array(sorted(members), np.int64), found, with_strain)
+        for (with_strain, found), members in alike.items()
+        if found
+    )
 
 
 def _members(card: Card, mesh: MeshCards) -> Iterator[tuple[int, Line]]:
     if card.has("REMOVE") == card.has("ADD"):
         raise card.error("expected one of ADD and REMOVE")
-    if key(card.get("ADD") or "STRAINFREE") != "STRAINFREE":
-        raise card.error(f"ADD={card.get('ADD')} is not supported: elements come back without strain; write ADD alone")
+    if key(card.get("ADD") or STRAINED) not in (STRAINED, "STRAINFREE"):
+        raise card.error(f"ADD={card.get('ADD')}: expected STRAIN FREE, WITH STRAIN, or no value")
     for line in card.lines:
         for i, text in enumerate(line.fields):
             for element in mesh.element_sets.resolve(line, i, "element").tolist() if text else ():

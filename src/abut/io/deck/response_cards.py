@@ -39,7 +39,8 @@ def parted(steps: Sequence[list[Card]]) -> tuple[list[list[Card]], list[list[Car
     step among others does so, or is not one that abut solves."""
     shaking = [any(card.key in KNOWN for card in step) for step in steps]
     first = shaking.index(True) if True in shaking else len(steps)
-    found = [_shaking(step) for step in steps[first:]]
+    loaded = any(step[0].has("PERTURBATION") and any(c.key == "FREQUENCY" for c in step) for step in steps[:first])
+    found = [_shaking(step, loaded) for step in steps[first:]]
     kept = tuple(one for one in found if one is not None)
     if len(kept) < len(found) or sum(one.between is None for one in kept) > 1:
         return None
@@ -55,14 +56,18 @@ def stored(card: Card) -> Card:
 
 def _static(step: Sequence[Card]) -> list[Card]:
     kept = [card for card in step if card.key != DAMPING]
-    return [Card("STATIC", "*STATIC", {}, (), card.place) if card.key in KNOWN else card for card in kept]
+    first = replace(kept[0], parameters={name: v for name, v in kept[0].parameters.items() if name != "PERTURBATION"})
+    return [first, *(Card("STATIC", "*STATIC", {}, (), card.place) if card.key in KNOWN else card for card in kept[1:])]
 
 
-def _shaking(step: Sequence[Card]) -> Shaking | None:
+def _shaking(step: Sequence[Card], loaded: bool) -> Shaking | None:
+    """loaded: whether modes are about a loaded state, which PERTURBATION then says of what is made of them, too."""
     procedures = [card for card in step if card.key in KNOWN]
-    if len(procedures) != 1 or not procedures[0].lines or step[0].has("PERTURBATION") or step[0].has("NLGEOM"):
+    if len(procedures) != 1 or not procedures[0].lines or step[0].has("NLGEOM"):
         return None
     card = procedures[0]
+    if step[0].has("PERTURBATION") and not (loaded and card.key == STEADY):
+        return None
     if set(card.parameters) - KNOWN[card.key] or (card.get("HARMONIC") or "YES").upper() != "YES":
         return None
     numbers = [as_float(text.strip()) if text.strip() else 0.0 for text in card.lines[0].fields]

@@ -43,6 +43,11 @@ def _section(card: Card, mesh: MeshCards, known: Mapping[str, Material] | None, 
     return _of_elements(card, mesh, known, axes, thickness)
 
 
+def section_of(card: Card, mesh: MeshCards, known: Mapping[str, Material]) -> Section:
+    """One *CHANGE SOLID SECTION. Raises InputError."""
+    return _of_elements(card, mesh, known, {}, 1.0)
+
+
 def _shell_section(
     card: Card, mesh: MeshCards, known: Mapping[str, Material] | None, axes: Mapping[str, Card]
 ) -> Section:

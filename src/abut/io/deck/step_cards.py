@@ -177,7 +177,8 @@ def prescribed(card: Card, mesh: MeshCards, known: Mapping[str, Amplitude]) -> l
     if key(card.get("TYPE", "DISPLACEMENT") or "") != "DISPLACEMENT":
         raise card.error(f"TYPE={card.get('TYPE')}: only displacements can be prescribed in statics")
     amplitude = later(card)
-    found = [value for line in card.lines for value in _LINES[card.key](line, amplitude, mesh)]
+    read = _between_planes if card.has("LINTEMP") else _LINES[card.key]
+    found = [value for line in card.lines for value in read(line, amplitude, mesh)]
     found = [replace(value, imaginary=True) for value in found] if case == "2" else found
     if not card.has("FIXED"):
         return found
@@ -271,6 +272,24 @@ def _temperature(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed
     nodes = mesh.existing(line, 0)
     slope = (line.number(2, "gradient through the thickness", 0.0), 0.0, 0.0)
     return [Prescribed("temperature", nodes, (0,), line.number(1, "temperature"), amplitude, line.place, slope)]
+
+
+def _between_planes(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed]:
+    """Temperatures that change evenly from one plane to another: their normal, and of each its distance from the origin and
+    its temperature. Nodes that are not between them keep theirs."""
+    normal = np.array([line.number(i, "normal of the planes") for i in range(3)])
+    one, other = ((line.number(i, "distance of a plane"), line.number(i + 1, "temperature of a plane")) for i in (3, 5))
+    if not normal.any() or one[0] == other[0]:
+        raise line.error(
+            "expected a normal and two planes that lie apart: x, y, z, distance, temperature, distance, temperature"
+        )
+    at = mesh.points @ (normal / np.linalg.norm(normal))
+    inside = (at >= min(one[0], other[0])) & (at <= max(one[0], other[0]))
+    warm = one[1] + (at - one[0]) * (other[1] - one[1]) / (other[0] - one[0])
+    return [
+        Prescribed("temperature", mesh.nodes[inside & (warm == degrees)], (0,), float(degrees), amplitude, line.place)
+        for degrees in np.unique(warm[inside])
+    ]
 
 
 _LINES: Mapping[str, Callable[[Line, str, MeshCards], list[Prescribed]]] = {
