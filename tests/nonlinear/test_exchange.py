@@ -24,7 +24,7 @@ class Side:
 
     n: int
     tied: bool = False
-    two_way: bool = False
+    decided: bool = False
     smooth: bool = False
 
     @property

@@ -46,7 +46,7 @@ def loaded_parts(pair: Pair, at: Averages | None, pressure: Array, active: NDArr
     multipliers and whether they are in contact; shown: (9 n_facets,) facet-wise coefficients of the pressure that results
     show; at: None where they are not averages: all or nothing then, as for functions at no corner."""
     whole = (active & (pressure > LOADED * pressure.max(initial=0.0))).astype(float)
-    if at is None:
+    if at is None or not whole.any():
         return whole
     owner, n = split_at_creases(pair.contactor)[1], len(pair.contactor.points)
     share = loaded_shares(at, at.of(shown))

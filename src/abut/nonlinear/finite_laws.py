@@ -76,7 +76,7 @@ def wanted_status(
 ) -> NDArray[np.int8]:
     """The status (n,) that complementarity and Coulomb's law ask for; that of other laws stays. gap: (n,) to judge by; left
     out: that of the state."""
-    wanted = next_status(system, state, increment, gap)
+    wanted = next_status(system, state, *increment.rounding, gap)
     kept = [np.full(len(pair), not pair.frictional and asked.of(pair, system) is not None) for pair in system.pairs]
     return np.where(system.join(kept).astype(bool), state.status, wanted).astype(np.int8)
 

@@ -122,7 +122,7 @@ class InteriorSliding(Method[Trial]):
         there = iterate(near(self._programme, here.here), self._manner)
         if not np.isfinite(there.state.multipliers).all():
             return Trial(there, here.status)
-        wanted = next_status(system, there.state.with_status(here.status), increment)
+        wanted = next_status(system, there.state.with_status(here.status), *increment.rounding)
         changed = points(system, wanted != here.status)
         now = there.state.with_status(wanted)
         self._course.add(now, changed, clock)

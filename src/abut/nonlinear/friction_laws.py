@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from abut.nonlinear.iteration import Increment
 from abut.nonlinear.laws import barely_covered
 from abut.problem.linearised import NOTHING, Linearised
 from abut.problem.pair import Pair
@@ -15,15 +14,16 @@ Vector = NDArray[np.float64]
 Status = NDArray[np.int8]
 
 
-def next_status(system: Linearised, state: State, increment: Increment, gap: Vector | None = None) -> Status:
+def next_status(system: Linearised, state: State, balanced: float, largest: float, gap: Vector | None = None) -> Status:
     """The status that the laws ask for, theory (R5), (R6), of each multiplier. What differs by rounding alone stays;
     what hardly has a target opposite is open.
-    gap: (n,) weighted gaps and slips to judge by; left out: those of the state."""
+    balanced: rounding, of the largest pressure; largest: of the steps before. gap: (n,) weighted gaps and slips to judge by;
+    left out: those of the state."""
     if not len(state.multipliers):
         return state.status
     pressed = np.concatenate([np.zeros(0), *(p[pair.normal] for pair, p in _contacts(system, state.multipliers))])
-    reference = float(np.abs(pressed).max(initial=increment.largest.pressure))
-    small = increment.settings.newton.balanced * max(reference, NOTHING)
+    reference = float(np.abs(pressed).max(initial=largest))
+    small = balanced * max(reference, NOTHING)
     gap = system.gap(state) if gap is None else gap
     gaps, multipliers, before = (system.split(part) for part in (gap, state.multipliers, state.status))
     wanted = [

@@ -96,7 +96,7 @@ class Sliding(Method[Trial]):
         """As in ``Method``."""
         clock, course = time.perf_counter(), self._course
         following = advanced(course.solver, here.state, course.increment, self._accuracy)
-        wanted = next_status(course.solver.system, following, course.increment)
+        wanted = next_status(course.solver.system, following, *course.increment.rounding)
         changed = points(course.solver.system, wanted != here.state.status)
         left = course.add(following.with_status(wanted), changed, clock)
         return Trial(following, wanted, changed, left)

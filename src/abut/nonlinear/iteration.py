@@ -28,6 +28,11 @@ class Increment:
     largest: Largest = field(default_factory=Largest)
     settings: Settings = DEFAULT
 
+    @property
+    def rounding(self) -> tuple[float, float]:
+        """The share of the largest pressure by which no status changes, and the largest pressure of the steps before."""
+        return self.settings.newton.balanced, self.largest.pressure
+
 
 @dataclass(frozen=True)
 class Found:

@@ -271,21 +271,36 @@ def _following(step: Step, here: Trial, closings: NDArray[np.int64], accuracy: f
     other = exchanged(here.system, here.state, there, closings, step.settings.newton.patience, solved)
     if other is not there:
         return other, True
-    return (_whole(step, here, there) if step.careful else there), False
+    if not step.careful:
+        return there, False
+    return (_whole(step, here, there) if step.rubs else _until_asked(step, here, there, solved)), False
 
 
 def _whole(step: Step, here: Trial, there: State) -> State | None:
-    """The solution of the problem near ``here``, status and all, from what an iteration has come to, None where none is
-    found; ``there`` itself with laws of one's own, which the searches do not know."""
+    """With friction, whose statuses may have no end: the solution of the problem near ``here``, status and all, from what an
+    iteration has come to, None where none is found; with laws of one's own, which searches do not know, just that."""
     system = here.system
     if any(step.asked.of(pair, system) is not None for pair in system.pairs):
         return there
     assert step.prepared is not None
     wanted = wanted_status(system, there, step.increment, step.asked)
     found = solve_linearised(step.prepared, there.with_status(wanted), step.increment)
-    if found is None:  # without friction bodies that jump are led on by iterations that leave more for a while
-        return None if step.rubs else there
+    if found is None:
+        return None
     return not_adrift(step.problem, system, here.state, found, step.settings.holding.near)
+
+
+def _until_asked(step: Step, here: Trial, there: State, solved: Callable[[State], State]) -> State:
+    """Without friction: solutions of the problem near ``here``, each with the status that the laws ask for before it.
+    Of several solutions of bodies that bend away this leads to the near one: ``beam-on-sharp-end-lower`` fails without."""
+    seen = {here.state.status.tobytes()}
+    while len(seen) < step.settings.newton.solutions:
+        wanted = wanted_status(here.system, there, step.increment, step.asked)
+        if wanted.tobytes() in seen:
+            break
+        seen.add(wanted.tobytes())
+        there = solved(here.state.with_status(wanted))
+    return there
 
 
 def _iterated(

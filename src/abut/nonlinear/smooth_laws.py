@@ -178,7 +178,7 @@ def _wanted(
 ) -> NDArray[np.int8] | NDArray[np.bool_]:
     """The status that the laws ask for of pairs without a smooth one."""
     if any(pair.frictional for pair in system.pairs):
-        return next_status(system, state, increment)
+        return next_status(system, state, *increment.rounding)
     return np.where(next_active(system, state, increment, tied)[0], CLOSED, OPEN)
 
 
