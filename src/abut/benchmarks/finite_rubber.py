@@ -30,10 +30,16 @@ def cylinder_pressure() -> float:
     return float(SHEAR * (np.log(a / b) + 0.5 * (b**-2 - a**-2)))
 
 
-def _sphere_pressure() -> float:
-    """The same of 2 mu (s^2 - s^-4) dr / r."""
+def sphere_pressure() -> float:
+    """The same of a sphere: int of 2 mu (s^2 - s^-4) dr / r."""
     a, b = INFLATED, outer_stretch(3)
     return float(SHEAR * (2.0 / b + 0.5 / b**4 - 2.0 / a - 0.5 / a**4))
+
+
+def inflation_source(shape: str) -> str:
+    """Where the pressures are from, in words."""
+    integrand = "2 (s^2 - s^-4)" if shape == "sphere" else "(s^2 - s^-2)"
+    return f"incompressible neo-Hooke: p = int mu {integrand} dr/r, s = r/R"
 
 
 def _rubber(mesh: Mesh, supports: list[Support], pressure: Pressure, plane: str) -> Model:
@@ -45,7 +51,7 @@ def _rubber(mesh: Mesh, supports: list[Support], pressure: Pressure, plane: str)
 
 
 def _inflated(shape: str) -> Benchmark:
-    value = _sphere_pressure() if shape == "sphere" else cylinder_pressure()
+    value = sphere_pressure() if shape == "sphere" else cylinder_pressure()
 
     def model(level: int) -> Model:
         n = 2**level
@@ -70,7 +76,7 @@ def _inflated(shape: str) -> Benchmark:
         }
 
     power = 3 if shape == "sphere" else 2
-    source = f"incompressible neo-Hooke: p = int mu {'2 (s^2 - s^-4)' if power == 3 else '(s^2 - s^-2)'} dr/r, s = r/R"
+    source = inflation_source(shape)
     return Benchmark(
         f"finite-{shape}",
         {"cylinder": "thick rubber cylinder, plane strain", "tube": "the same cylinder, axisymmetric",

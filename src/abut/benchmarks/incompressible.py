@@ -1,10 +1,18 @@
-"""Bodies that keep their volume, with mixed cells: Cook's membrane, a bonded layer under a cylinder, a rubber cylinder."""
+"""Bodies that keep their volume, of mixed cells: Cook's membrane, a layer under a cylinder, rubber cylinder and sphere."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from abut.benchmarks.finite_rubber import INFLATED, RADII, SHEAR, cylinder_pressure, outer_stretch
+from abut.benchmarks.finite_rubber import (
+    INFLATED,
+    RADII,
+    SHEAR,
+    cylinder_pressure,
+    inflation_source,
+    outer_stretch,
+    sphere_pressure,
+)
 from abut.benchmarks.record import Benchmark, Reference
 from abut.materials.elastic import LinearElastic
 from abut.materials.hyperelastic import NeoHooke
@@ -81,17 +89,20 @@ def _layer(cell: str) -> Benchmark:
     )
 
 
-def _cylinder() -> Benchmark:
+def _inflated(shape: str, cell: str) -> Benchmark:
+    """Cylinder or sphere (a quarter of its meridian) of rubber; 16 cells of second order through the wall."""
+    sphere = shape == "sphere"
+
     def model(level: int) -> Model:
         n = 2**level
-        wall = ring(RADII, cells=(8 * n, 12 * n), cell="quad9")
+        wall = ring(RADII, cells=(16 * n, 24 * n), cell=cell)
         rubber = NeoHooke(shear=SHEAR, bulk=1e7 * SHEAR, volumetric="isochoric")
         return Model(
             join({"wall": wall}),
             [Solid("wall", rubber, integration="mixed")],
             [Support("wall.start", y=0.0), Support("wall.end", x=0.0)],
-            [Pressure("wall.inner", cylinder_pressure())],
-            plane="strain",
+            [Pressure("wall.inner", sphere_pressure() if sphere else cylinder_pressure())],
+            plane="axisymmetric" if sphere else "strain",
             kinematics="finite",
             solve=SolveOptions(steps=5),
         )
@@ -106,18 +117,23 @@ def _cylinder() -> Benchmark:
             "outer stretch": float(after[outer].mean()) / RADII[1],
         }
 
-    source = "incompressible neo-Hooke: p = int mu (s^2 - s^-2) dr/r, s = r/R"
-    reason = "quadratic cells, 8 through the wall"
+    source, reason = inflation_source(shape), "16 cells of second order through the wall, h^3 or better"
     return Benchmark(
-        "mixed-cylinder",
-        "thick rubber cylinder blown up, bulk modulus 1e7 times that of shear, mixed quad9",
+        f"mixed-{shape}",
+        f"thick rubber {shape} blown up, bulk modulus 1e7 times that of shear, mixed {cell}",
         model,
         measure,
         {
-            "inner stretch": Reference(INFLATED, 5e-6, source, reason),
-            "outer stretch": Reference(outer_stretch(2), 1e-6, source, reason),
+            "inner stretch": Reference(INFLATED, 1e-6, source, reason),
+            "outer stretch": Reference(outer_stretch(3 if sphere else 2), 1e-6, source, reason),
         },
     )
 
 
-BENCHMARKS = (_cook("tri6"), _cook("quad9"), _layer("tri6"), _layer("quad9"), _cylinder())
+BENCHMARKS = (
+    _cook("tri6"),
+    _cook("quad9"),
+    _layer("tri6"),
+    _layer("quad9"),
+    *(_inflated(shape, "quad9") for shape in ("cylinder", "sphere")),
+)
