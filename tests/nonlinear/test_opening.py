@@ -6,10 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import pytest
 
-import abut
-from abut.job.load import load_job
 from abut.nonlinear.finite_laws import following_status, without_pulling
 from abut.nonlinear.iteration import Increment
 from abut.nonlinear.laws import Asked
@@ -61,21 +58,6 @@ def test_guess() -> None:
     gap = 0.5 * DEFAULT.newton.bent
     assert status(gap, (2.0 * young * gap, 0.1 * young * gap), guessed=True) == [CLOSED, OPEN]
     assert status(gap, (0.2 * young * gap, 0.1 * young * gap), guessed=True) == [CLOSED, CLOSED]
-
-
-@pytest.mark.long
-def test_steps_of_a_hook() -> None:
-    """Pushed over its catch, past the largest force: a quarter fewer iterations at least, and fewer steps, where what
-    presses stays closed."""
-    model, bent = load_job(HOOK).model, DEFAULT.newton.bent
-    iterations, steps = [], []
-    for far in (0.0, bent):
-        solution = abut.solve(model, settings=replace(DEFAULT, newton=replace(DEFAULT.newton, bent=far)))
-        assert solution.converged
-        iterations.append(sum(len(step.iterations) for step in solution.steps))
-        steps.append(len(solution.steps))
-    assert iterations[1] <= 0.75 * iterations[0]
-    assert steps[1] < steps[0]
 
 
 def test_without_what_pulls() -> None:

@@ -118,9 +118,8 @@ def following_status(system: Linearised, state: State, increment: Increment, ask
     """The status (n,) that the laws ask for, but for points that are closed and press: they stay closed.
 
     An iteration has closed them in the linear problem. The gap that they have nevertheless is what that has left out; the
-    law divides it by h / E, which makes of a hundredth of a facet more than most pressures. Without it
-    ``test_steps_of_a_hook`` fails (224 iterations instead of 143). guessed: no iteration leads to the state; points that
-    press stay closed only where otherwise all of a contact would open."""
+    law divides it by h / E, which makes of a hundredth of a facet more than most pressures. guessed: no
+    iteration leads to the state; points that press stay closed only where otherwise all of a contact would open."""
     gap = system.gap(state)
     presses = state.closed & (state.multipliers > 0.0)
     wanted = wanted_status(system, state, increment, asked)

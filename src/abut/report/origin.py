@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from abut.probing.table import peaks
-from abut.solution import Solution, Step
+from abut.solution import ContactResult, Solution, Step
 from abut.types import Json
 
 PROFILE = "contact.profile"
@@ -44,19 +44,26 @@ OF_FRICTION = (
 
 
 def quantities(step: Step) -> dict[str, float]:
-    """What ``expected.json`` may speak of, by its names there: the first contact, and the peaks of all probes."""
+    """What ``expected.json`` may speak of, by its names there: the first contact, forces, pressures and areas of each
+    contact by its name, and the peaks of all probes."""
     known: dict[str, float] = {}
     for result in step.probes:
         largest = peaks(result)
         known |= {f"probe.{result.name}.{name}": value for name, value in largest.items() if value is not None}
+    for contact in step.contacts:
+        known |= _of_contact(f"contact.{contact.name}", contact)
     for contact in step.contacts[:1]:
-        known |= {"contact.max_pressure": contact.max_pressure, "contact.area": contact.area}
-        known |= {f"contact.force.{axis}": float(value) for axis, value in zip("xyz", contact.force)}
+        known |= _of_contact("contact", contact)
         turns = "z" if contact.contactor.dim == 2 else "xyz"
         known |= {f"contact.moment.{axis}": float(value) for axis, value in zip(turns, contact.resultant.moment)}
         if contact.friction is not None:
             known |= {f"contact.friction.{name}": float(getattr(contact.friction, name)) for name in OF_FRICTION}
     return known
+
+
+def _of_contact(name: str, contact: ContactResult) -> dict[str, float]:
+    found = {f"{name}.force.{axis}": float(value) for axis, value in zip("xyz", contact.force)}
+    return {f"{name}.max_pressure": contact.max_pressure, f"{name}.area": contact.area, **found}
 
 
 def comparison(solution: Solution, expected: Mapping[str, object]) -> list[Json]:
