@@ -182,3 +182,31 @@ def test_as_calculix(tmp_path: Path) -> None:
     wanted = table[np.argsort(table[:, 0])][:8, 1:]
     found = abut.solve(here.model).displacement[:8]
     assert np.abs(found - wanted).max() < SAME * np.abs(wanted).max()
+
+
+@pytest.mark.skipif(CCX is None, reason="CalculiX is not installed")
+def test_dashpots_have_no_effect(tmp_path: Path) -> None:
+    """In static steps, as in CalculiX, whose displacements these are; a note says so."""
+    held = BRICKS + AROUND + FOOT + BETWEEN.format("SPRING2") + "3, 3\n12.5\n"
+    dashpots = "*ELEMENT, TYPE=DASHPOTA, ELSET=DAMP\n301, 1, 5\n302, 2, 6\n*ELSET, ELSET=SOME\n301\n"
+    dashpots += "*DASHPOT, ELSET=DAMP\n\n1.e6\n"
+    text = held + dashpots + step("*CLOAD", "TOP, 3, 2.5", "*NODE PRINT, NSET=ALL", "U")
+    here = load(tmp_path, text)
+    assert any("without effect" in note and "*DASHPOT" in note for note in here.notes)
+    subprocess.run([str(CCX), "deck"], cwd=tmp_path, check=True, capture_output=True, timeout=60)
+    lines = [line.split() for line in (tmp_path / "deck.dat").read_text().splitlines()]
+    table = np.array([[float(x) for x in line] for line in lines if len(line) == 4 and line[0].isdigit()])
+    wanted = table[np.argsort(table[:, 0]), 1:]
+    found = abut.solve(here.model).displacement
+    assert np.abs(found - wanted).max() < SAME * np.abs(wanted).max()
+
+
+def test_dashpots_are_refused_where_they_act(tmp_path: Path) -> None:
+    """In what is shaken after *FREQUENCY they damp in CalculiX."""
+    text = BRICKS.replace("*ELASTIC", "*DENSITY\n1.\n*ELASTIC") + AROUND + FOOT
+    text += "*ELEMENT, TYPE=DASHPOTA, ELSET=DAMP\n301, 1, 5\n*DASHPOT, ELSET=DAMP\n\n1.e6\n"
+    text += "*STEP\n*FREQUENCY, STORAGE=YES\n3\n*END STEP\n"
+    text += "*STEP\n*STEADY STATE DYNAMICS\n1., 2.\n*CLOAD\nTOP, 3, 2.5\n*END STEP\n"
+    with pytest.raises(InputError, match=r"\*DASHPOT: vibrations have no dashpots; give \*MODAL DAMPING"):
+        load(tmp_path, text)
+    load(tmp_path, text, "DASHPOT")

@@ -65,7 +65,7 @@ def test_summary_and_history(written: Path) -> None:
     assert sum(step["contacts"][0]["friction"]["work"] for step in steps) == pytest.approx(
         steps[4]["contacts"][0]["friction"]["total_work"]
     )
-    assert list(rows[0])[-8:-6] == ["max_total_slip", "energy_loads"]  # more columns come last
+    assert list(rows[0])[-9:-7] == ["max_total_slip", "energy_loads"]  # more columns come last
 
 
 def test_numbers_of_sliding(tmp_path: Path) -> None:

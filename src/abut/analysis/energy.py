@@ -26,7 +26,8 @@ class Acting:
     of what holds the points; pressing, rubbing: of pressures and ties, and of tractions; stored: strain energy; free:
     (n_free,) displacements; follows: (dim n_points, n_free) how the points go with them there; residual: largest force left
     on these; drag: (n_free,) that of a step which it leads, None without; flowed: work of plastic flow so far; time: when
-    that is; tractions: (n_tangential,) of each pair, where these are the same at all states, so not at large displacements.
+    that is; resisting: forces of dashpots, no part of the loads, which have dissipated damped so far; tractions:
+    (n_tangential,) of each pair, where these are the same at all states, so not at large displacements.
     stored is not a number where the work of stresses is what is stored: where a material does not tell its energy, and at
     small displacements."""
 
@@ -44,6 +45,8 @@ class Acting:
     flowed: float = 0.0
     time: float = 0.0
     tractions: Sequence[Vector] = ()
+    resisting: Vector | None = None
+    damped: float = 0.0
 
     @classmethod
     def none(cls, displacement: Vector, follows: Sparse) -> Acting:
@@ -96,6 +99,8 @@ def energy(
     rounding = (np.abs(balance.diagonal) * np.abs(now.free)) @ way
     mean = 0.5 * np.abs(before.internal + now.internal)
     rounding += mean @ np.abs(now.displacement)  # where hardly anything has moved
+    resisted = sum(-0.5 * float(side.resisting @ moved) for side in (before, now) if side.resisting is not None)
+    dashpots = now.damped - before.damped
     size, drags = float(mean @ np.abs(moved)), [side.drag for side in (before, now) if side.drag is not None]
     at_rest = told and now.drag is None and not any(drag.any() for drag in drags) and abs(friction) <= ENERGY * size
     at_rest = at_rest and has_potential(problem, before.time, now.time)
@@ -105,7 +110,7 @@ def energy(
         contact=work("pressing") + closing,
         stored=stored,
         friction=friction,
-        stepping=stepping,
+        stepping=stepping + resisted - dashpots,
         size=max(size, NOTHING * earlier, 1e-300),
         left=float(np.finfo(float).eps * rounding + max(before.residual, now.residual) * way.sum()),
         earlier=earlier if large or now.flowed else 0.0,
@@ -114,6 +119,7 @@ def energy(
         plastic=plastic,
         flowed=now.flowed,
         unexplained=unexplained(before.loads, now.loads, moved, stored + plastic) if at_rest else None,
+        dashpots=dashpots,
     )
 
 

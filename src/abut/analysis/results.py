@@ -46,6 +46,7 @@ from abut.problem.balance import Balance
 from abut.problem.body_terms import heated
 from abut.problem.connectors import Connectors
 from abut.problem.constraints import Constraints
+from abut.problem.dashpots import Dashpots, dissipated
 from abut.problem.follower_loads import FollowerLoads
 from abut.problem.held_motions import HeldMotions, held_force
 from abut.problem.holds import Holds
@@ -72,9 +73,9 @@ class _End:
     """A model at the end of a load step. displacement, internal, loads, reaction: (dim n_points,) without rigid motions on
     springs, forces of stresses, of loads, of supports and links; following: those of loads that follow the deformation,
     and of other physics; locked, sprung: of preloads that are locked, of springs, connectors, contacts that let go and what
-    holds neutral motions; held: of supports that come and go, part of the reaction; pressures: (n,) of each pair; cycling:
-    (n,) multipliers that keep changing; supports: of each pair int H_k over all of the deformed contactor, (n_functions,),
-    where it may meet the target anywhere, else None."""
+    holds neutral motions; damping: of dashpots, part of sprung, None without; held: of supports that come and go, part of
+    the reaction; pressures: (n,) of each pair; cycling: (n,) multipliers that keep changing; supports: of each pair int H_k
+    over all of the deformed contactor, (n_functions,), where it may meet the target anywhere, else None."""
 
     problem: ContactProblem
     balance: Balance
@@ -92,6 +93,7 @@ class _End:
     cycling: NDArray[np.bool_]
     flow: Flow | None
     supports: Sequence[NDArray[np.float64] | None]
+    damping: NDArray[np.float64] | None
 
     @property
     def nodal(self) -> NDArray[np.float64]:
@@ -201,15 +203,16 @@ def _end(assembled: Assembled, attempt: Attempt) -> _End:
     for term in problem.terms:
         if isinstance(term, Springs):
             sprung -= term.evaluate(motion, motion).force
-    for name in (HeldMotions.name, Connectors.name, Released.name):
+    for name in (HeldMotions.name, Connectors.name, Released.name, Dashpots.name):
         if name in balance.forces:
             sprung -= balance.forces[name][: len(sprung)]
+    damping = -balance.forces[Dashpots.name] if Dashpots.name in balance.forces else None
     held = -balance.forces.get(Holds.name, np.zeros_like(displacement))
     loads = assembled.loaded.forces @ balance.factors + following + locked + sprung
     reaction = internal - loads - contact_force
     return _End(
         problem, balance, state, motion, displacement, pressures, internal, loads, reaction, following, locked, sprung,
-        held, cycling, flow(problem.model.deformable, motion.history), supports,
+        held, cycling, flow(problem.model.deformable, motion.history), supports, damping,
     )  # fmt: skip
 
 
@@ -219,18 +222,20 @@ def _energy(
     """What acts at the end of a step, and the energy over it; None where it did not converge, and at small displacements
     where nothing takes any."""
     problem, balance, state, finite = end.problem, end.balance, end.state, end.problem.model.finite
-    takes = finite or end.flow is not None or any(pair.frictional for pair in balance.pairs)
+    takes = finite or end.flow is not None or end.damping is not None or any(pair.frictional for pair in balance.pairs)
     if not attempt.converged or not takes:
         return None, None
     outset, factors = (weights(problem.model.histories, time) for time in (0.0, state.time))
     pressed = pressing(balance.pairs, end.pressures, len(end.internal))
     largest = max(float(np.abs(force).max(initial=0.0)) for force in (end.internal, end.loads))
     least = max(attempt.iterations[-1].residual, DEFAULT.newton.balanced)
+    loads = end.loads + end.held - (0.0 if end.damping is None else end.damping)
     now = Acting(
-        end.displacement, end.internal, end.loads + end.held, end.reaction - end.held, pressed,
+        end.displacement, end.internal, loads, end.reaction - end.held, pressed,
         end.internal - end.loads - end.reaction - pressed, balance.energy, state.unknowns,
         problem.constraints.near(state.unknowns, factors).free, (state.largest.force if finite else largest) * least,
         state.history.drag, end.flow.work if end.flow else 0.0, state.time, tractions(balance.pairs, end.pressures),
+        end.damping, dissipated(state.history.of(Dashpots.name)),
     )  # fmt: skip
     if acted is None:
         rest = np.zeros_like(state.unknowns)
@@ -284,14 +289,13 @@ def _rigid(end: _End, body: RigidBody, forces: NDArray[np.float64]) -> RigidResu
 def _springs(end: _End) -> dict[str, NDArray[np.float64]]:
     """Resultant of each spring on what it is on."""
     model = end.problem.model
-    found = {}
+    nodal: dict[str, NDArray[np.float64]] = {}
     for term in end.problem.terms:
         if isinstance(term, Springs):
-            for spring in model.springs:
-                found[spring.name] = term.force_on(end.displacement)[spring.name][model.mesh.nodes_of(spring.on)].sum(
-                    axis=0
-                )
-    return found
+            nodal |= term.force_on(end.displacement)
+        elif isinstance(term, Dashpots):
+            nodal |= term.force_on(end.displacement, end.state.history.of(term.name))
+    return {spring.name: nodal[spring.name][model.mesh.nodes_of(spring.on)].sum(axis=0) for spring in model.springs}
 
 
 def _preloads(end: _End) -> dict[str, PreloadResult]:

@@ -1,4 +1,4 @@
-"""Rotating discs, bearing loads, pressures of a liquid, and springs to the ground and between points: closed forms."""
+"""Rotating discs, bearing loads, pressures of a liquid, springs and dashpots: closed forms."""
 
 from __future__ import annotations
 
@@ -9,7 +9,19 @@ import numpy as np
 from abut.benchmarks.record import Benchmark, Reference
 from abut.materials.elastic import LinearElastic
 from abut.mesh.make import join, rectangle, ring
-from abut.model import Centrifugal, Contact, Force, Gravity, Model, Pressure, Solid, Spring, Support
+from abut.model import (
+    Amplitude,
+    Centrifugal,
+    Contact,
+    Force,
+    Gravity,
+    Model,
+    Pressure,
+    Solid,
+    SolveOptions,
+    Spring,
+    Support,
+)
 from abut.solution import Solution
 
 YOUNG, POISSON, DENSITY = 210e3, 0.3, 7.85e-9  # N, mm, t
@@ -197,4 +209,55 @@ def _springs() -> Benchmark:
     )  # fmt: skip
 
 
-BENCHMARKS = (_rotating_disc(), _rotating_fit(), _bearing(), _immersed(), _springs())
+def _kelvin() -> Benchmark:
+    """A bar on a bed of springs and one of dashpots, under a force that is there at once."""
+    young, height, width, force = 1000.0, 4.0, 2.0, 10.0
+    bed, damping, end = 50.0, 100.0, 4.0  # the exponential falls by e in 2
+    decay = bed / damping
+
+    def model(level: int) -> Model:
+        steps = 40 * 2**level
+        return Model(
+            join({"bar": rectangle((0.0, width), (0.0, height), (1, 2), "quad4")}),
+            [Solid("bar", LinearElastic(young, 0.0))],
+            [Support("bar.left", x=0)],
+            [Force("bar.top", (0.0, -force), amplitude=Amplitude(((0.0, 1.0), (end, 1.0))))],
+            springs=[
+                Spring("bed", "bar.bottom", normal=bed / width, per_area=True),
+                Spring("dashpots", "bar.bottom", normal=damping / width, per_area=True, dashpot=True),
+            ],
+            plane="stress",
+            solve=SolveOptions(end=end, times=tuple(np.linspace(0.0, end, steps + 1)[1:])),
+        )
+
+    def measure(solution: Solution) -> dict[str, float]:
+        nodes = solution.model.mesh.nodes_of("bar.bottom")
+        sunk = np.array([-float(step.displacement[nodes, 1].mean()) for step in solution.steps])
+        ends = np.array([step.time for step in solution.steps])
+        euler = force / bed * (1.0 - (1.0 + ends[0] * decay) ** -np.arange(1.0, len(ends) + 1.0))
+        resisted = np.array([float(step.springs["dashpots"][1]) for step in solution.steps])
+        taken = sum(step.energy.dashpots for step in solution.steps if step.energy)
+        speeds = np.diff(euler, prepend=0.0) / ends[0]
+        return {
+            "displacements over Euler's": 1.0 + float(np.abs(sunk / euler - 1.0).max()),
+            "forces of the dashpots over Euler's": 1.0 + float(np.abs(resisted - damping * speeds).max()) / force,
+            "energy over Euler's": taken / float(damping * ends[0] * speeds @ speeds),
+            "displacement over the exponential": float(sunk[-1] / (force / bed * (1.0 - np.exp(-decay * end)))),
+        }
+
+    exact, rounding = "u_n = (F + c u_(n-1) / dt) / (k + c / dt)", "uniform stresses, nu = 0"
+    return Benchmark(
+        "kelvin", "a bar on springs and dashpots under a force that is there at once", model, measure,
+        {
+            "displacements over Euler's": Reference(1.0, 1e-10, exact, rounding),
+            "forces of the dashpots over Euler's": Reference(1.0, 1e-10, exact, rounding),
+            "energy over Euler's": Reference(1.0, 1e-10, "c times speed squared", rounding),
+            "displacement over the exponential": Reference(
+                1.0, 0.01, "Kelvin and Voigt: F / k (1 - exp(-k t / c))",
+                "backward Euler with 40 steps: the exponent is smaller by k dt / 2 c, 2.5 %",
+            ),
+        },
+    )  # fmt: skip
+
+
+BENCHMARKS = (_rotating_disc(), _rotating_fit(), _bearing(), _immersed(), _springs(), _kelvin())

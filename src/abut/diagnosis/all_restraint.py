@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from abut.model import Model
 from abut.problem.connectors import Connectors
 from abut.problem.constraints import Constraints
+from abut.problem.dashpots import Dashpots
 from abut.problem.holds import Holds
 from abut.problem.pair import Pair
 from abut.problem.restraint import Restraint, helped, restraint
@@ -14,6 +15,8 @@ from abut.problem.springs import Springs
 
 
 def all_restraint(model: Model, constraints: Constraints, pairs: Sequence[Pair]) -> Restraint:
-    """Of supports and ``pairs``, helped by springs, holds and connectors, as a run has it."""
+    """Of supports and ``pairs``, helped by springs, dashpots, holds and connectors, as a run has it."""
     joined = Connectors.of(model, constraints.bodies)
-    return helped(restraint(model.mesh, constraints, pairs), (Springs.of(model), Holds.of(model), joined))
+    return helped(
+        restraint(model.mesh, constraints, pairs), (Springs.of(model), Dashpots.of(model), Holds.of(model), joined)
+    )

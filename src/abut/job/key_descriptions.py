@@ -199,6 +199,8 @@ MEANINGS: dict[str, dict[str, str]] = {
         "along": "with to or point: the same along the line between both ends, of the lengthening [force/length]",
         "per_area": "of a surface: all these per area (force/length^3, force/length^2)",
         "weak": "only there to keep loose parts in place: the certificate judges its force",
+        "dashpot": "a dashpot: x to along are of speeds over the time of the run [force time/length], tables of speed and "
+        "force",
     },
     **PASSING,
     "StopTable": {

@@ -140,8 +140,8 @@ def typical_steps(model: Model) -> int:
 
 
 def _changes(model: Model) -> bool:
-    """Whether each iteration at small displacements has new factors, as materials, springs and bolts drawn by a force ask
-    (``abut.problem.assembly``)."""
+    """Whether each iteration at small displacements has new factors, as materials, springs, dashpots and bolts drawn by a
+    force ask (``abut.problem.assembly``)."""
     springs = Springs.of(model)
     drawn = any(preload.force is not None for preload in model.preloads)
     return (
@@ -149,6 +149,7 @@ def _changes(model: Model) -> bool:
         or drawn
         or bool(model.physics or model.connectors)
         or not (springs is None or springs.constant)
+        or any(spring.dashpot for spring in model.springs)
     )
 
 

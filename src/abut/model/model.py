@@ -179,7 +179,7 @@ class Model:
         check_loads(self.mesh, self.loads, {body.body for body in self.rigid}, {c.name for c in self.couplings})
         check_responses(self.mesh, self.modes, {body.body for body in self.rigid}, {c.name for c in self.couplings})
         self._check_contacts()
-        check_springs(self.mesh, self.springs)
+        check_springs(self.mesh, self.springs, self.modes)
         object.__setattr__(self, "holds", check_holds(self.mesh, self.holds))
         object.__setattr__(self, "penetrations", check_penetrations(self.mesh, self.penetrations, self.contacts))
         check_connectors(self.mesh, self.connectors, self.referenced, self.finite)

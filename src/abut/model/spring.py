@@ -1,4 +1,4 @@
-"""Springs: to the ground, between two points, and foundations under a surface."""
+"""Springs and dashpots: to the ground, between two points, and foundations under a surface."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from abut import checks
 from abut.errors import InputError
 from abut.mesh.mesh import Mesh
 from abut.model.conditions import vector
+from abut.model.response import Wanted
 
 ALONG = ("x", "y", "z", "normal", "along")
 Table = tuple[tuple[float, float], ...]
@@ -22,7 +23,7 @@ class Spring:
 
     ``x`` to ``along`` are each a stiffness [force/length], or a table of (displacement, force), linear between its points
     and on beyond them; they are of the whole place, spread evenly over the area of a surface or the nodes of a set, unless
-    ``per_area`` is true.
+    ``per_area`` is true. A dashpot resists speeds in the same way, over the time of the run.
 
     Parameters
     ----------
@@ -44,6 +45,9 @@ class Spring:
         Only there to keep loose parts in place: the certificate fails where it carries more than a thousandth of the forces.
     point : (dim,) of float, optional
         Of a node set, in place of ``to``: a point fixed in space that all its nodes are tied to.
+    dashpot : bool
+        A dashpot: ``x`` to ``along`` are damping constants [force time/length], or tables of (speed, force). Beside a spring
+        of the same place both are in parallel.
 
     Raises
     ------
@@ -55,6 +59,7 @@ class Spring:
     >>> import abut
     >>> bed = abut.Spring("bed", "plate.bottom", normal=0.05, per_area=True)
     >>> stop = abut.Spring("stop", "arm.tip", y=[(-1.0, -500.0), (0.0, 0.0), (1.0, 0.0)])  # carries downward only
+    >>> damper = abut.Spring("damper", "arm.tip", y=20.0, dashpot=True)
     """
 
     name: str
@@ -68,6 +73,7 @@ class Spring:
     per_area: bool = False
     weak: bool = False
     point: tuple[float, ...] | None = None
+    dashpot: bool = False
 
     def __post_init__(self) -> None:
         where = f"spring '{self.name}'"
@@ -119,14 +125,20 @@ def _law(value: Any, where: str) -> float | Table:
     return checks.positive(value, where)
 
 
-def check_springs(mesh: Mesh, springs: Sequence[Spring]) -> None:
-    """Raise InputError for places that do not exist or do not fit, and directions that plane models lack."""
+def check_springs(mesh: Mesh, springs: Sequence[Spring], modes: Sequence[Wanted]) -> None:
+    """Raise InputError for places that do not exist or do not fit, directions that plane models lack, and dashpots beside
+    modes, which would not have them."""
     names: set[str] = set()
     for i, spring in enumerate(springs):
         where = f"springs[{i}]"
         if spring.name in names:
             raise InputError(f"{where}.name: '{spring.name}' is used twice; give each spring its own name")
         names.add(spring.name)
+        if spring.dashpot and modes:
+            raise InputError(
+                f"{where}.dashpot: frequencies, buckling and vibrations have no dashpots; take it out, and give vibrations "
+                "their damping or rayleigh"
+            )
         surfaces_only = spring.normal is not None or spring.per_area
         known = [*mesh.surfaces] if surfaces_only else [*mesh.surfaces, *mesh.node_sets]
         checks.known(spring.on, known, f"{where}.on", "surface" if surfaces_only else "surface or node set")

@@ -13,7 +13,7 @@ from abut.solution import ContactResult, FrictionResult, Step
 from abut.types import Json
 
 # Columns of history.csv after the force; those of ``more_columns`` come last.
-ENERGIES = ("loads", "supports", "contact", "stored", "friction", "plastic", "stepping")
+ENERGIES = ("loads", "supports", "contact", "stored", "friction", "plastic", "dashpots", "stepping")
 OF_CONTACT = ("max_pressure", "area", "max_penetration", "active")
 
 

@@ -21,6 +21,7 @@ from abut.problem.connectors import Connectors
 from abut.problem.constraints import Constraints, supports
 from abut.problem.contact_pairs import pairs, reach_of
 from abut.problem.current import Current
+from abut.problem.dashpots import Dashpots
 from abut.problem.discretised import stacked, unit_of
 from abut.problem.finite_pairs import finite_pairs
 from abut.problem.follower_loads import FollowerLoads
@@ -71,7 +72,7 @@ def assemble(
     clock: Clock,
 ) -> Assembled:
     """The problem of a model. Raises InputError and SingularModelError for one that cannot be solved."""
-    reduced, sprung = backend.reduce(constraints), Springs.of(model)
+    reduced, sprung, damped = backend.reduce(constraints), Springs.of(model), Dashpots.of(model)
     if sprung is not None and sprung.constant:
         reduced = reduced + sprung.tangent(np.zeros(model.mesh.points.size)).reduce(constraints)
     clock.mark("assembly")
@@ -83,7 +84,8 @@ def assemble(
     clock.mark("interface")
     observe(Phase("checking for unconstrained rigid-body motions"))
     passing, ends = Holds.of(model), loaded.at_ends(model)
-    restrained, joined = _joined(model, helped(restraint(model.mesh, constraints, every), (sprung, passing)), ends)
+    restrained = helped(restraint(model.mesh, constraints, every), (sprung, damped, passing))
+    restrained, joined = _joined(model, restrained, ends)
     neutral, settled = neutral_in(model, restrained, ends)
     rigid, resisted = restrained.rigid, restrained.everything
     springs = free_mode_springs(rigid, resisted, constraints, reduced, ends, neutral, settled, floats_of(model))
@@ -98,7 +100,7 @@ def assemble(
     _check_finite(reduced.diagonal(), loaded.forces)
     bodies = _bodies(model, loaded, backend)
     fluids = Penetrations.of(model, every)
-    found = (sprung, held, passing, fluids, joined, Released.of(model))
+    found = (sprung, damped, held, passing, fluids, joined, Released.of(model))
     beside = [*_beside(model, constraints, loaded), *(term for term in found if term)]
     own = _own(model, [term.name for term in (bodies, *beside)])
     beside += own

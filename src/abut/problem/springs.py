@@ -40,18 +40,29 @@ class SpringRows:
         piece = np.clip(np.searchsorted(u, moved, side="right") - 1, 0, len(slopes) - 1)
         return self.share * (f[piece] + slopes[piece] * (moved - u[piece])), self.share * slopes[piece]
 
-    def pull(self, displacement: Array) -> Array:
-        """Forces (dim n_points,) that hold displacements (dim n_points,)."""
+    def lengthening(self, displacement: Array) -> Array:
+        """What each of n springs is moved by, (n,), at displacements (dim n_points,)."""
         if self.turning is None:
-            return np.asarray(self.rows.T @ self.forces(self.rows @ displacement)[0])
-        along, _, force, _ = self._turned(*self.turning, displacement)
+            return np.asarray(self.rows @ displacement)
+        return self._turned(*self.turning, displacement)[1] - np.linalg.norm(self.turning[0], axis=1)
+
+    def nodal(self, force: Array, displacement: Array) -> Array:
+        """Forces (dim n_points,) that hold displacements (dim n_points,) against those of springs, (n,)."""
+        if self.turning is None:
+            return np.asarray(self.rows.T @ force)
+        along = self._turned(*self.turning, displacement)[0]
         return np.asarray(self.turning[1].T @ (force[:, None] * along).ravel())
 
-    def stiffness(self, displacement: Array) -> Sparse:
-        """Their derivative (dim n_points, dim n_points): of a spring that turns k d d^T + (f / l) (1 - d d^T)."""
+    def pull(self, displacement: Array) -> Array:
+        """Forces (dim n_points,) that hold displacements (dim n_points,)."""
+        return self.nodal(self.forces(self.lengthening(displacement))[0], displacement)
+
+    def stiffness(self, force: Array, slope: Array, displacement: Array) -> Sparse:
+        """Derivative (dim n_points, dim n_points) of the forces of springs, (n,), of which each changes by a slope, (n,):
+        of a spring that turns k d d^T + (f / l) (1 - d d^T)."""
         if self.turning is None:
-            return self.rows.T @ sp.diags(self.forces(self.rows @ displacement)[1]) @ self.rows
-        along, length, force, slope = self._turned(*self.turning, displacement)
+            return self.rows.T @ sp.diags(slope) @ self.rows
+        along, length = self._turned(*self.turning, displacement)
         both = along[:, :, None] * along[:, None, :]
         across = np.eye(along.shape[1]) - both
         blocks = slope[:, None, None] * both + (force / length)[:, None, None] * across
@@ -59,17 +70,21 @@ class SpringRows:
         apart = self.turning[1]
         return apart.T @ sp.bsr_matrix((blocks, np.arange(n), np.arange(n + 1))) @ apart
 
-    def _turned(self, rest: Array, apart: Sparse, displacement: Array) -> tuple[Array, Array, Array, Array]:
-        """Of n springs that turn: directions (n, dim), lengths, forces and slopes (n,)."""
+    def resistance(self, motions: Array) -> Array:
+        """Gram matrix of motions (dim n_points, m) by what springs take of them, of the size of one."""
+        moved, share = self.rows @ motions, np.abs(self.share) / np.abs(self.share).sum()
+        return np.asarray(moved.T @ (share[:, None] * moved))
+
+    def _turned(self, rest: Array, apart: Sparse, displacement: Array) -> tuple[Array, Array]:
+        """Of n springs that turn: directions (n, dim) and lengths (n,)."""
         reach, size = rest + (apart @ displacement).reshape(rest.shape), np.linalg.norm(rest, axis=1)
         length = np.maximum(np.linalg.norm(reach, axis=1), ONE * size)
-        force, slope = self.forces(length - size)
-        return reach / length[:, None], length, force, slope
+        return reach / length[:, None], length
 
 
 @dataclass(frozen=True)
 class Springs:
-    """All springs of a model; ``constant`` where they are linear."""
+    """All springs of a model, without its dashpots; ``constant`` where they are linear."""
 
     model: Model
     parts: Sequence[SpringRows]
@@ -79,9 +94,9 @@ class Springs:
     @classmethod
     def of(cls, model: Model) -> Springs | None:
         """None where there are none. Raises InputError for springs between points that coincide."""
-        if not model.springs:
+        parts = [part for spring in model.springs if not spring.dashpot for part in parts_of(model, spring)]
+        if not parts:
             return None
-        parts = [part for spring in model.springs for part in _parts(model, spring)]
         return cls(model, parts, all(isinstance(part.law, float) and part.turning is None for part in parts))
 
     def evaluate(self, before: Motion, now: Motion) -> Share:
@@ -95,17 +110,12 @@ class Springs:
         """At displacements (dim n_points,)."""
         slope = sp.csr_matrix((len(displacement),) * 2)
         for part in self.parts:
-            slope = slope + part.stiffness(displacement)
+            slope = slope + part.stiffness(*part.forces(part.lengthening(displacement)), displacement)
         return MatrixTangent(slope.tocsr())
 
     def resistance(self, motions: Array) -> Array:
         """Gram matrix of motions (dim n_points, m) by what springs take of them, of the size of one."""
-        total = np.zeros((motions.shape[1],) * 2)
-        for part in self.parts:
-            moved = part.rows @ motions
-            share = np.abs(part.share) / np.abs(part.share).sum()
-            total += moved.T @ (share[:, None] * moved)
-        return total
+        return np.asarray(sum(part.resistance(motions) for part in self.parts))
 
     def force_on(self, displacement: Array) -> dict[str, Array]:
         """By spring the nodal forces (n_points, dim) on what it is on."""
@@ -116,7 +126,8 @@ class Springs:
         return found
 
 
-def _parts(model: Model, spring: Spring) -> list[SpringRows]:
+def parts_of(model: Model, spring: Spring) -> list[SpringRows]:
+    """Of each law of a spring. Raises InputError for springs between points that coincide."""
     mesh, dim = model.mesh, model.dim
     result = []
     for key, law in spring.laws.items():

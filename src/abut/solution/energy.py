@@ -11,8 +11,8 @@ ROUNDED = 1e-5  # the same at most: of large models by iterative solvers, and wh
 @dataclass(frozen=True)
 class Energy:
     """Where the energy of one load step comes from and where it goes, theory (R10), (G13): loads + supports + contact =
-    stored + friction + plastic + stepping + stabilisation. Force times length; in 2D per unit thickness, in axisymmetric
-    models of the whole turn.
+    stored + friction + plastic + dashpots + stepping + stabilisation. Force times length; in 2D per unit thickness, in
+    axisymmetric models of the whole turn.
 
     loads: work of loads and of heat; supports: of supports, equations and rigid bodies that move; contact: of pressures on
     the bodies, where interference grows or gaps close or open within the step, and of tractions on what only comes closer;
@@ -25,7 +25,7 @@ class Energy:
     with finite kinematics only; earlier: with them, and after flow, the largest size of the steps before;
     stabilisation: what a drag takes on the way of a step that it leads, theory (G24); plastic: what plastic flow
     takes, with what hardening keeps of it, theory (Y11);
-    flowed: the same since the beginning;
+    flowed: the same since the beginning; dashpots: what these dissipate, force at the end of the step times way;
     unexplained: what no stable way of equilibria explains where positive, theory (G25); None where that cannot be said.
     """
 
@@ -43,12 +43,13 @@ class Energy:
     plastic: float = 0.0
     flowed: float = 0.0
     unexplained: float | None = None
+    dashpots: float = 0.0
 
     @property
     def error(self) -> float:
         """What is missing in the balance, over the size."""
         missing = self.loads + self.supports + self.contact - self.stored - self.friction - self.stepping
-        missing -= self.stabilisation + self.plastic
+        missing -= self.stabilisation + self.plastic + self.dashpots
         return abs(missing) / self.size
 
     @property

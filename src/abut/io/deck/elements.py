@@ -135,6 +135,7 @@ def _beams() -> dict[str, ElementType]:
 
 
 ELEMENTS = _types()
+DASHPOTS = "DASHPOTELEMENTS"  # key of *ELEMENT cards with them
 SHELLS, BEAMS = frozenset({*_shells(), "M3D6", "M3D8", "M3D8R"}), frozenset(_beams())  # solids of second order
 
 # Local facet of ``abut.cells`` for S1, S2, ...
@@ -156,7 +157,6 @@ FACES: dict[str, tuple[int, ...]] = {
 
 _FAMILIES = (  # prefixes of what is refused, longest first
     ("SPRING", "springs"),
-    ("DASHPOT", "dashpots"),
     ("DCOUP", "distributing couplings"),
     ("CONN", "connectors"),
     ("MASS", "point masses"),

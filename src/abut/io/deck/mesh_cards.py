@@ -11,7 +11,7 @@ import numpy as np
 from abut.cells import CELLS
 from abut.errors import nearest
 from abut.io.deck.cards import Card, Line, as_integer, key
-from abut.io.deck.elements import ELEMENTS, FACES, refusal
+from abut.io.deck.elements import DASHPOTS, ELEMENTS, FACES, refusal
 from abut.io.deck.mass_cards import ELEMENTS as MASSES
 from abut.io.deck.reasons import Place, Reasons
 from abut.io.deck.record import Block, Faces, Numbers
@@ -114,7 +114,7 @@ def mesh_cards(cards: Iterable[Card], notes: list[str], reasons: Reasons) -> Mes
             members = _set(card, "element", element_sets, element_sets, elements)
             members = _present(card, "element", members, {*elements, *springs} if springs else elements, notes)
             element_sets.add(card.need("ELSET"), np.array([e for e in members.tolist() if e in elements], np.int64))
-        elif card.key in (POINTS, SPRINGS, MASSES):
+        elif card.key in (POINTS, SPRINGS, MASSES, DASHPOTS):
             if card.key != POINTS:
                 springs.update(number for line in card.lines if (number := as_integer(line.text(0))) is not None)
             if card.get("ELSET"):  # of elements with a volume
@@ -126,7 +126,7 @@ def mesh_cards(cards: Iterable[Card], notes: list[str], reasons: Reasons) -> Mes
 
     springs: set[int] = set()
     there: Collection[int] = ()
-    for keys in (("NODE",), ("ELEMENT",), (SPRINGS, POINTS, MASSES), ("NSET", "ELSET"), ("SURFACE",)):
+    for keys in (("NODE",), ("ELEMENT",), (SPRINGS, POINTS, MASSES, DASHPOTS), ("NSET", "ELSET"), ("SURFACE",)):
         there = {*nodes, *virtual}
         for card in cards:
             if card.key in keys:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from abut.io.deck.assembly import without_parts
-from abut.io.deck.cards import Card, read_cards
+from abut.io.deck.cards import Card, key, of, read_cards
 from abut.io.deck.changed_sections import with_changed_sections
 from abut.io.deck.contact_cards import general_contact, pairs
 from abut.io.deck.coupling_cards import couplings
@@ -56,6 +56,8 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
     every, modes = without_modes(with_elastic_laws(_cards(path, notes, reasons), notes), ignore)
     notes += modes.notes if modes is not None else ()
     sifted = sift(without_tied_friction(every, notes), reasons, ignore)
+    if modes is not None and modes.shaking:
+        _refuse_dashpots(every, ignore, reasons)
     if not sifted.plain:
         reasons.tell()
     cards = with_weights(without_repeated(sifted.cards, notes), modes is not None, reasons)
@@ -146,6 +148,13 @@ def read_mesh_only(path: Path) -> Deck:
 def _cards(path: Path, notes: list[str], reasons: Reasons) -> tuple[Card, ...]:
     """All cards, those of parts written out."""
     return without_parts(read_cards(path, opens, reasons), notes, reasons)
+
+
+def _refuse_dashpots(cards: Sequence[Card], ignore: Collection[str], reasons: Reasons) -> None:
+    """Of what is shaken, the only steps in which they have an effect in CalculiX."""
+    if "DASHPOT" not in {key(name.lstrip("*")) for name in ignore}:
+        for card in of(cards, "DASHPOT"):
+            reasons.add(card.refusal("vibrations have no dashpots; give *MODAL DAMPING", "DASHPOT"))
 
 
 def _fixed(

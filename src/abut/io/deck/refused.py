@@ -53,7 +53,6 @@ REFUSED: dict[str, str] = {
     "CONTACT EXCLUSIONS": "exclusions are not read; name the surfaces that touch in *CONTACT PAIR",
     "CREEP": f"creep is not supported{_MATERIAL}",
     "DAMPING MODEL": "damping belongs to dynamics; take it out",
-    "DASHPOT": "dashpots are not supported; take them out",
     "DEFORMATION PLASTICITY": "deformation theory is not supported; give *PLASTIC",
     "DEPVAR": f"variables of user materials are not read{_MATERIAL}",
     "DESIGN VARIABLES": f"what the design may change {_OPTIMISED}",

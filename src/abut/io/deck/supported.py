@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from abut.errors import InputError, nearest
 from abut.io.deck import mass_cards, spring_cards
 from abut.io.deck.cards import Card, key
-from abut.io.deck.elements import ELEMENTS, refusal
+from abut.io.deck.elements import DASHPOTS, ELEMENTS, refusal
 from abut.io.deck.output_cards import REQUESTS
 from abut.io.deck.reasons import DeckError, Reasons
 from abut.io.deck.refused import PARAMETERS, PROCEDURES, REFUSED, RUBBER
@@ -104,7 +104,7 @@ QUIET = (
     "ELEMENT OUTPUT", "OUTPUT", "CONTACT PRINT", "CONTACT FILE", "CONTACT OUTPUT", "SECTION PRINT", "SECTION FILE",
     "ENERGY PRINT", "ENERGY FILE", "ENERGY OUTPUT", "INTEGRATED OUTPUT", "FILE FORMAT", "FILE OUTPUT", "MONITOR",
     "TIME POINTS", "CONTROLS", "CONTACT CONTROLS", "SOLVER CONTROLS", "SECTION CONTROLS",
-    "CONDUCTIVITY", "SPECIFIC HEAT", "GAP CONDUCTANCE", "GAP HEAT GENERATION", "DAMPING", "CONTACT DAMPING",
+    "CONDUCTIVITY", "SPECIFIC HEAT", "GAP CONDUCTANCE", "GAP HEAT GENERATION", "DAMPING", "CONTACT DAMPING", "DASHPOT",
     "PHYSICAL CONSTANTS", "VALUES AT INFINITY", "NO ANALYSIS", "DAMAGE INITIATION",
 )  # fmt: skip
 
@@ -119,6 +119,7 @@ NEEDED = {  # leaving these out would leave no deck
 AT_NODES = {  # types of elements -> key of *ELEMENT cards with them
     **dict.fromkeys(("DCOUP2D", "DCOUP3D"), "DCOUP"),  # the reference nodes of *DISTRIBUTING COUPLING
     mass_cards.CODE: mass_cards.ELEMENTS,
+    **dict.fromkeys(("DASHPOT1", "DASHPOT2", "DASHPOTA"), DASHPOTS),  # without effect
 }
 WRITTEN = ("NODE", "ELEMENT", "NSET", "ELSET")  # cards whose parameters say what their numbers mean
 RESTART = (
