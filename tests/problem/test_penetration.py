@@ -14,8 +14,10 @@ from abut.bodies.follower import follower_pressure
 from abut.job.convert import write_job
 from abut.job.load import load_job
 from abut.mesh.make import box, join, rectangle
+from abut.problem.fluid_frames import fluids
 from abut.problem.wetting import at_corners
 from abut.solution import Saved
+from models.oracle import assembled
 
 CELLS = 20
 FACET = BASE / CELLS
@@ -31,7 +33,7 @@ def _solved(model: abut.Model) -> abut.Solution:
 @pytest.mark.parametrize("dim", [2, pytest.param(3, marks=pytest.mark.long)])
 def test_any_pressure_space_opens_as_far(dim: int, pressure: str) -> None:
     """The crack under a dam with full uplift, c = 3 (F e - p b^2 / 2) / (F - p b), within a facet, at every pressure. Forces
-    of the fluid on both sides are equal, as they are meshed alike."""
+    of the fluid on both sides are equal."""
     cells = 2 * CELLS if dim == 2 else CELLS
     model = uplift(dim, cells)
     model = replace(model, contacts=[replace(model.contacts[0], pressure=pressure)])
@@ -58,8 +60,71 @@ def test_any_cells_open_as_far(cell: str) -> None:
     step = _solved(replace(model, mesh=mesh)).steps[-1]
     fluid = step.penetrations["joint"]
     assert fluid.area == pytest.approx(BASE - LIGAMENT, abs=1.5 * FACET)
-    # what the target feels is interpolated between its own points
-    assert -fluid.target[1] == pytest.approx(fluid.contactor[1], abs=HEAD * FACET / 4.0)
+    # where it is open the block has turned from the layer, and its base is as much shorter from above
+    assert -fluid.target[1] == pytest.approx(fluid.contactor[1], abs=HEAD * BASE * (1.0 - np.cos(0.02)))
+
+
+LONG = pytest.mark.long
+
+
+@pytest.mark.parametrize("cell", ["quad4", pytest.param("quad8", marks=LONG), pytest.param("tri6", marks=LONG)])
+@pytest.mark.parametrize("facets", [(1, 3), (3, 1), (5, 3)])
+def test_unlike_meshes_are_of_second_order(cell: str, facets: tuple[int, int]) -> None:
+    """Forces of the fluid on both sides are equal and opposite to rounding, whatever the meshes, and the toe settles by
+    what the pressure there, p + 2 (F - p b) / c, asks of its column, with an error of second order in the facets' size:
+    the crack ends within a facet, where pressures are linear for one with a kink."""
+    wanted, errors = HEAD + 2.0 * (WEIGHT - HEAD * BASE) / LIGAMENT, []
+    for coarse in (7, 27):
+        mesh = join(
+            {
+                "layer": rectangle((0.0, BASE), (-1.0, 0.0), (coarse * facets[0], 1), cell),
+                "block": rectangle((0.0, BASE), (0.0, 5.0), (coarse * facets[1], 1), cell),
+            }
+        )
+        step = _solved(replace(uplift(2, CELLS), mesh=mesh)).steps[-1]
+        fluid = step.penetrations["joint"]
+        assert np.abs(fluid.contactor + fluid.target).max() < 1e-13 * coarse * WEIGHT
+        assert step.reactions["layer.bottom"][-1] == pytest.approx(WEIGHT, rel=1e-10)
+        base = mesh.nodes_of("block.bottom")
+        toe = base[np.argmax(mesh.points[base, 0])]
+        errors.append(abs(-100.0 * step.displacement[toe, 1] / wanted - 1.0))
+    assert errors[1] < errors[0] * (7 / 27) ** 1.5
+    slope = 2.0 * (WEIGHT - HEAD * BASE) / LIGAMENT**2
+    assert errors[1] < slope * (BASE / 27) ** 2 / 8.0 / WEIGHT  # what a kink between two points is missed by
+
+
+@pytest.mark.parametrize("pressure", ["P1", "dual"])
+@pytest.mark.parametrize("cell", ["quad4", "quad8", "hex8", "tet10"])
+def test_both_sides_feel_the_same(cell: str, pressure: str) -> None:
+    """Force and moment of a fluid in half a closed joint, on either side as contactor, the finer or the coarser one."""
+    for low, top in ((9, 4), (4, 9), (3, 9)):
+        model = _pressed(cell, low, top, pressure)
+        problem, points = assembled(model), model.mesh.points
+        term, pair = fluids(problem), problem.pairs[0]
+        wet = term.wettings[0].at(pair, points[:, 0] < 0.55, np.zeros(len(points), dtype=bool), points)
+        on = [force.reshape(points.shape) for force, _ in term.on_sides(0, wet, 1.0, points)]
+        assert np.abs(on[0].sum(axis=0)).max() > 0.4
+        both = on[0] + on[1]
+        assert both.sum(axis=0) == pytest.approx(np.zeros(model.mesh.dim), abs=1e-12)
+        assert points.T @ both == pytest.approx(np.zeros((model.mesh.dim,) * 2), abs=1e-12)
+
+
+def _pressed(cell: str, low: int, top: int, pressure: str) -> abut.Model:
+    """Two blocks whose joint, y or z = 0, has as many facets along x."""
+    sizes = {"low": (low, (-1, 0)), "top": (top, (0, 1))}
+    if cell.startswith("quad"):
+        mesh = join({name: rectangle((0, 1), high, (n, 1), cell) for name, (n, high) in sizes.items()})
+    else:
+        mesh = join({name: box((0, 1), (0, 1), high, (n, n // 2, 1), cell) for name, (n, high) in sizes.items()})
+    held = [abut.Support(side, x=0, y=0, z=0 if mesh.dim == 3 else None) for side in ("low.bottom", "top.top")]
+    return abut.Model(
+        mesh,
+        [abut.Solid(name, abut.LinearElastic(100.0, 0.0)) for name in sizes],
+        held,
+        contacts=[abut.Contact(contactor="low.top", target="top.bottom", name="joint", pressure=pressure)],
+        plane="strain" if mesh.dim == 2 else None,
+        penetrations=[abut.Penetration("joint", "low.left", 1.0)],
+    )
 
 
 def test_what_presses_more_than_the_fluid_seals() -> None:

@@ -34,10 +34,13 @@ def penetration_results(problem: Discretised, state: State, displacement: Array)
 
 
 def fluid_fields(problem: Discretised, state: State) -> dict[str, Array]:
-    """The pressure of fluids at nodes, (n_points,); empty without any."""
+    """The pressure of fluids at nodes, (n_points,), without what carrying it to the target overshoots; empty without any."""
     term = fluids(problem)
     if term is None:
         return {}
     wets = term.begun(state.history.of(TERM))
-    every = [w.penetration.pressure(state.time) * wet.shares.max(axis=1) for w, wet in zip(term.wettings, wets)]
+    every = [
+        w.penetration.pressure(state.time) * np.clip(wet.shares.max(axis=1), 0.0, 1.0)
+        for w, wet in zip(term.wettings, wets)
+    ]
     return {FLUID: np.max(every, axis=0)}

@@ -13,8 +13,8 @@ from abut.types import Array
 @dataclass(frozen=True)
 class Wet:
     """How far a fluid has got. nodes: (n_points,) corners of the contactor that it reaches; left: those that it has left in
-    this step; shares: (n_points, 2) share of the pressure that acts at the points of contactor and target, 0 to 1, linear
-    between."""
+    this step; shares: (n_points, 2) share of the pressure that acts at the points of contactor and target, linear between:
+    0 to 1, and on the target somewhat beyond at the fluid's edge."""
 
     nodes: NDArray[np.bool_]
     left: NDArray[np.bool_]

@@ -10,13 +10,16 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import spsolve
 from scipy.spatial import cKDTree
 
 from abut.cells import BY_CODE
+from abut.contact.coupling import CouplingOptions
+from abut.contact.geometry import facet_products
+from abut.contact.slip_points import SlipPoints
 from abut.mesh.surface import Surface
 from abut.model import Model
 from abut.model.penetration import Penetration, corners, source_nodes
-from abut.probing.closest_points import feet
 from abut.problem.pair import Pair
 from abut.problem.wet import Wet
 from abut.types import Array, Sparse
@@ -76,14 +79,7 @@ class Wetting:
         on_contactor = self.middles @ nodes.astype(float)
         shares = np.column_stack([on_contactor, np.zeros(len(nodes))])
         if nodes.any():
-            contactor, others = replace(pair.contactor, points=points), pair.target.node_ids
-            found = feet(contactor, points[others])
-            ids = contactor.node_ids
-            values = on_contactor[ids[cKDTree(points[ids]).query(points[others])[1]]]  # beside the contactor
-            seen, first = np.unique(found.point, return_index=True)
-            on_facets = np.where(contactor.nodes >= 0, on_contactor[np.maximum(contactor.nodes, 0)], 0.0)
-            values[seen] = np.einsum("kn,kn->k", found.weights[first], on_facets[found.facet[first]])
-            shares[others, 1] = np.clip(values, 0.0, 1.0)
+            shares[:, 1] = _carried(pair, on_contactor, points)
         return Wet(nodes, left, shares)
 
 
@@ -106,6 +102,48 @@ def at_corners(surface: Surface, nodal: Array, dual: bool = False) -> Array:
         values = nodal[surface.nodes[here, :count]]
         result[here, :count] = values @ _dual(count) if dual else values
     return result
+
+
+def _carried(pair: Pair, shares: Array, points: Array) -> Array:
+    """Shares (n_points,) on the target, linear between its corners, of those on the contactor, theory (F24): what acts on
+    both sides is equal and opposite where they face each other. Beside that, those of the nearest point of the contactor."""
+    contactor, target = replace(pair.contactor, points=points), replace(pair.target, points=points)
+    rule, moving = pair.contact.integration, pair.moving
+    across = (None, None) if moving is None else (moving.contactor, moving.target)
+    options = CouplingOptions(rule.rule, rule.points, target_across=across[1])
+    cut = SlipPoints.of(contactor, target, 1, options, across[0])
+    of_contactor = at_corners(contactor, shares, not pair.space.ordinary)
+    pushing = np.einsum("qk,qk->q", cut.pressure, of_contactor[cut.facet])
+    between = _middles(target, len(points))
+    own, ids, used = corners(target), target.node_ids, contactor.node_ids
+    beside = np.zeros(len(points))
+    beside[own] = shares[used[cKDTree(points[used]).query(points[own])[1]]]
+    seen = (_at_points(target, cut) @ between).tocsr()
+    lacks = seen.T @ (cut.weight * (pushing - seen @ beside))
+    beside[own] += spsolve(_mass(target)[own][:, own].tocsc(), lacks[own])
+    result = np.zeros(len(points))
+    result[ids] = (between @ beside)[ids]
+    return result
+
+
+def _at_points(target: Surface, cut: SlipPoints) -> Sparse:
+    """(n, n_points): values of the target's shape functions at the integration points."""
+    nodes = target.nodes[cut.target_facet]
+    there = nodes >= 0
+    rows = np.broadcast_to(np.arange(len(nodes))[:, None], nodes.shape)[there]
+    return sp.csr_matrix((cut.other[there], (rows, nodes[there])), shape=(len(nodes), len(target.points)))
+
+
+def _mass(surface: Surface) -> Sparse:
+    """(n_points, n_points): integrals of products of the functions of corners."""
+    products, count = facet_products(surface, 1), len(surface.points)
+    total = sp.csr_matrix((count, count))
+    for code in np.unique(surface.kinds):
+        n, here = BY_CODE[code].corners, surface.kinds == code
+        nodes = surface.nodes[here, :n]
+        at = np.repeat(nodes, n, axis=1).ravel(), np.tile(nodes, (1, n)).ravel()
+        total = total + sp.csr_matrix((products[here, :n, :n].ravel(), at), shape=(count, count))
+    return total
 
 
 def _dual(count: int) -> Array:
