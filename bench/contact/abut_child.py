@@ -1,4 +1,4 @@
-"""One solve by abut in a process of its own: python bench/contact/abut_child.py CASE DOFS [--tied] [--linear NAME]
+"""One solve by abut in a process of its own: python bench/contact/abut_child.py CASE DOFS [--tied] [--dual] [--linear NAME]
 
 Prints one line of JSON: seconds from a model in memory to results in memory, in all, of the processor and by stage,
 iterations, force.
@@ -20,10 +20,13 @@ def main() -> None:
     parser.add_argument("case")
     parser.add_argument("dofs", type=int)
     parser.add_argument("--tied", action="store_true", help="tie the bodies: the linear problem on the same mesh")
+    parser.add_argument(
+        "--dual", action="store_true", help="dual multipliers, as Kratos and CalculiX (mortar) have them"
+    )
     parser.add_argument("--linear", default="auto")
     arguments = parser.parse_args()
     case = cases.model(arguments.case, arguments.dofs)
-    model = cases.with_options(case, linear=arguments.linear, tied=arguments.tied)
+    model = cases.with_options(case, linear=arguments.linear, tied=arguments.tied, dual=arguments.dual)
     start, processor = time.perf_counter(), time.process_time()
     solution = solve(model)
     seconds, processor = time.perf_counter() - start, time.process_time() - processor

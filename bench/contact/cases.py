@@ -122,12 +122,23 @@ def _rubber(n: int, cell: str) -> abut.Model:
     return replace(model, solids=solids, contacts=contacts, kinematics="finite", solve=abut.SolveOptions(steps=STEPS))
 
 
+def _neo_hooke(n: int, cell: str) -> abut.Model:
+    """The same with neo-Hooke's law as Kratos has it, lambda/2 (ln J)^2, and between the facets as they are."""
+    model = _rubber(n, cell)
+    solids = [
+        replace(solid, material=replace(law, volumetric="log-squared"))
+        for solid, law in zip(model.solids, (RUBBER, HARD))
+    ]
+    contacts = [replace(contact, geometry="faceted") for contact in model.contacts]
+    return replace(model, solids=solids, contacts=contacts)
+
+
 GEOMETRIES: dict[str, Callable[[int, str], abut.Model]] = {
     "flat": _flat, "tilted": _tilted_blocks, "friction": _rubbing, "hertz": _hertz,
-    "plastic": _plastic, "rubber": _rubber,
+    "plastic": _plastic, "rubber": _rubber, "neohooke": _neo_hooke,
 }  # fmt: skip
 
-BALLS = ("hertz", "plastic", "rubber")
+BALLS = ("hertz", "plastic", "rubber", "neohooke")
 
 
 def dofs(model: abut.Model) -> int:
@@ -166,9 +177,10 @@ def _nearest(size: Callable[[int], int], wanted: int) -> int:
     return low if wanted - size(low) < size(high) - wanted else high
 
 
-def with_options(case: abut.Model, *, linear: str, tied: bool) -> abut.Model:
-    """The same model for another linear solver, or with the bodies tied."""
+def with_options(case: abut.Model, *, linear: str, tied: bool, dual: bool = False) -> abut.Model:
+    """The same model for another linear solver, with the bodies tied, or with dual multipliers."""
     contacts = [replace(c, kind="tied", friction=0.0) if tied else c for c in case.contacts]
+    contacts = [replace(c, pressure="dual") if dual else c for c in contacts]
     return replace(case, contacts=contacts, solve=replace(case.solve, linear=linear))
 
 

@@ -16,7 +16,7 @@ from process import Run
 
 HERE = Path(__file__).parent
 TYPES = {"calculix-mortar": "mortar", "calculix-penalty": "penalty"}
-CODES = ("abut", "abut-tied", "pyamg", *TYPES, "kratos")
+CODES = ("abut", "abut-tied", "abut-dual", "pyamg", *TYPES, "kratos")
 DISTRIBUTION = "KratosContactStructuralMechanicsApplication"
 
 
@@ -55,7 +55,7 @@ def _output(command: list[str], check: bool = True) -> str:
 
 
 def _abut(name: str, linear: str) -> Code:
-    options = ["--linear", linear, *(["--tied"] if name == "abut-tied" else [])]
+    options = ["--linear", linear, *({"abut-tied": ["--tied"], "abut-dual": ["--dual"]}.get(name, []))]
     version = _output([sys.executable, "-c", "import abut; print(abut.__version__)"])
     return Code(name, "abut", version, None, lambda case, dofs: _script("abut_child.py", case, dofs, *options), _said)
 

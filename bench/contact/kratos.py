@@ -28,6 +28,7 @@ ELEMENTS = {
     "tet10": "SmallDisplacementElement3D10N",
     "quad4": "SmallDisplacementElement2D4N",
 }
+LARGE = {kind: name.replace("SmallDisplacement", "TotalLagrangian") for kind, name in ELEMENTS.items()}
 CONDITIONS = {
     "line2": "LineCondition2D2N",
     "quad4": "SurfaceCondition3D4N",
@@ -63,7 +64,8 @@ def mdpa(case: abut.Model) -> Iterator[str]:
         for kind, nodes, numbers in mesh.cells_of(solid.body):
             table = np.column_stack([numbers, nodes[:, ORDER.get(kind, slice(None))]]) + 1
             rows = (f"{row[0]} {i} {' '.join(map(str, row[1:]))}" for row in table.tolist())
-            yield from _block(f"Elements {ELEMENTS[kind]}", rows)
+            names = LARGE if case.kinematics == "finite" else ELEMENTS
+            yield from _block(f"Elements {names[kind]}", rows)
     first, faces, sides = 1, [], [surface_of(mesh, name) for name in (contact.contactor, contact.target)]
     for i, surface in enumerate(sides, 1):
         kind = BY_CODE[int(surface.kinds[0])]
@@ -90,28 +92,56 @@ def surface_of(mesh: abut.Mesh, names: str | tuple[str, ...]) -> Surface:
 
 
 def materials(case: abut.Model) -> dict[str, Any]:
-    """StructuralMaterials.json. Raises ValueError for laws that are not those of linear elasticity."""
-    for solid in case.solids:
-        if not isinstance(solid.material, abut.LinearElastic):
-            raise ValueError(f"Kratos: {type(solid.material).__name__} is not compared")
+    """StructuralMaterials.json. Raises ValueError for laws that are not those of linear elasticity and von Mises
+    plasticity with linear isotropic hardening under small strains, and neo-Hooke's with lambda/2 (ln J)^2."""
     return {
         "properties": [
             {
                 "model_part_name": f"Structure.body_{solid.body}",
                 "properties_id": i,
-                "Material": {
-                    "constitutive_law": {"name": "LinearElastic3DLaw"},
-                    "Variables": {"YOUNG_MODULUS": solid.material.young, "POISSON_RATIO": solid.material.poisson},
-                    "Tables": {},
-                },
+                "Material": {**_law(solid.material, case.kinematics), "Tables": {}},
             }
             for i, solid in enumerate(case.solids, 1)
         ]
     }
 
 
+def _law(material: object, kinematics: str) -> dict[str, Any]:
+    """Its name and constants."""
+    more: dict[str, Any] = {}
+    if isinstance(material, abut.LinearElastic):
+        name = "LinearElastic3DLaw"
+    elif isinstance(material, abut.NeoHooke) and material.volumetric == "log-squared":
+        name = "HyperElastic3DLaw"
+    elif _flows_linearly(material, kinematics):
+        assert isinstance(material, abut.Plastic)
+        name = "SmallStrainJ2Plasticity3DLaw"
+        more = {
+            "YIELD_STRESS": material.yield_stress,
+            "ISOTROPIC_HARDENING_MODULUS": material.hardening,
+            "EXPONENTIAL_SATURATION_YIELD_STRESS": material.yield_stress,
+            "HARDENING_EXPONENT": 0.0,
+        }
+    else:
+        raise ValueError(f"Kratos: {type(material).__name__} is not compared")
+    constants = {"YOUNG_MODULUS": material.young, "POISSON_RATIO": material.poisson, **more}
+    return {"constitutive_law": {"name": name}, "Variables": constants}
+
+
+def _flows_linearly(material: object, kinematics: str) -> bool:
+    return (
+        isinstance(material, abut.Plastic)
+        and kinematics != "finite"
+        and isinstance(material.yield_stress, float)
+        and not material.saturation
+        and not material.backstresses
+    )
+
+
 def parameters(case: abut.Model) -> dict[str, Any]:
-    """ProjectParameters.json."""
+    """ProjectParameters.json; displacements grow with the time, to 1, where there is more than one load step."""
+    given = case.solve.steps
+    steps = given if isinstance(given, int) else 1
     supports = [
         {
             "python_module": "assign_vector_variable_process",
@@ -120,7 +150,9 @@ def parameters(case: abut.Model) -> dict[str, Any]:
                 "model_part_name": f"Structure.support_{i}",
                 "variable_name": "DISPLACEMENT",
                 "constrained": [value is not None for value in (s.x, s.y, s.z)],
-                "value": [s.x, s.y, s.z],
+                "value": [
+                    None if value is None else f"{value!r} * t" if steps > 1 else value for value in (s.x, s.y, s.z)
+                ],
                 "interval": [0.0, "End"],
             },
         }
@@ -144,7 +176,7 @@ def parameters(case: abut.Model) -> dict[str, Any]:
             "problem_name": "case",
             "parallel_type": "OpenMP",
             "start_time": 0.0,
-            "end_time": 1.0,
+            "end_time": 1.0 - 0.5 / steps,
             "echo_level": 0,
         },
         "solver_settings": {
@@ -155,7 +187,7 @@ def parameters(case: abut.Model) -> dict[str, Any]:
             "analysis_type": "non_linear",
             "model_import_settings": {"input_type": "mdpa", "input_filename": "case"},
             "material_import_settings": {"materials_filename": "materials.json"},
-            "time_stepping": {"time_step": 1.1},
+            "time_stepping": {"time_step": 1.0 / steps if steps > 1 else 1.1},
             "contact_settings": {"mortar_type": f"ALMContact{kind}"},
             "convergence_criterion": "contact_residual_criterion",
             "compute_reactions": True,

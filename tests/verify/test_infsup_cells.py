@@ -1,4 +1,4 @@
-"""The inf-sup test of contact pressures and continuous pressures of mixed tet10 cells together."""
+"""The inf-sup test of contact pressures and pressures of mixed cells together."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ import pytest
 
 import abut
 from abut.cli import main
-from abut.mesh.make import box, join
+from abut.mesh.make import box, join, rectangle
+from abut.mesh.quadrature import PRESSURES
 from abut.verify import inf_sup, infsup
-from abut.verify.cell_pressures import continuous_inf_sup
+from abut.verify.cell_pressures import cell_inf_sup, continuous_inf_sup
 
 
 def pad(n: int, pressure: str = "auto", integration: str = "mixed") -> abut.Model:
@@ -63,6 +64,50 @@ def test_pressures_that_fall_together(monkeypatch: pytest.MonkeyPatch) -> None:
     assert not falling.stable
     assert "h^0.74" in falling.verdict  # log2 5/3
     assert "no displacement feels" in inf_sup(models).verdict
+
+
+def flat_pad(cell: str, n: int, pressure: str = "auto", rigid: bool = False) -> abut.Model:
+    """A square of rubber on a plate, its top held, or all but the side of contact on a rigid plate."""
+    rubber = rectangle((0, 1), (0, 1), (n, n), cell)
+    plate = rectangle((0, 1), (-0.5, 0), (n, n), cell)
+    base = [abut.Solid("plate", abut.LinearElastic(200.0, 0.3))]
+    held = ["top", "left", "right"] if rigid else ["top"]
+    return abut.Model(
+        join({"rubber": rubber, "plate": plate}),
+        [abut.Solid("rubber", abut.LinearElastic(3.0, 0.5), integration="mixed"), *([] if rigid else base)],
+        [abut.Support(f"rubber.{side}", x=0.0, y=0.0) for side in held]
+        + ([] if rigid else [abut.Support("plate.bottom", x=0.0, y=0.0)]),
+        contacts=[abut.Contact("rubber.bottom", "plate.top", pressure=pressure)],
+        rigid=[abut.Rigid("plate", x=0.0, y=0.0, rz=0.0)] if rigid else [],
+        plane="strain",
+    )
+
+
+@pytest.mark.parametrize("cell", ["tri6", "quad8", "quad9"])
+def test_together_with_pressures_of_single_cells(cell: str) -> None:
+    """As those that are continuous: no larger than either alone, of which contact that is stable takes little (a tenth where
+    the cells' own constant still falls to its limit), and not falling with the mesh."""
+    sizes, together = (4, 8), []
+    levels = inf_sup([flat_pad(cell, n) for n in sizes]).levels
+    for n, level in zip(sizes, levels):
+        mesh = rectangle((0, 1), (0, 1), (n, n), cell)
+        alone = cell_inf_sup(mesh, mesh.points[:, 1] < 1.0 - 1e-12, PRESSURES[cell])
+        assert level.cells is not None
+        assert level.cells <= min(level.trace, alone) * (1.0 + 1e-6)
+        assert level.cells > 0.85 * min(level.trace, alone)
+        together.append(level.cells)
+    assert together[1] > 0.95 * together[0]
+
+
+@pytest.mark.parametrize("cell", ["tri6", "quad9"])
+def test_contact_on_the_only_free_side(cell: str) -> None:
+    """Of a body that keeps its volume and is held everywhere else: its constant pressure and that of contact see the same
+    volume, so that no displacement feels the two together."""
+    result = inf_sup(flat_pad(cell, 4, "P1", rigid=True))
+    assert result.levels[0].cells == pytest.approx(0.0, abs=1e-7)
+    assert result.levels[0].spurious == 0
+    assert not result.stable
+    assert "no displacement feels" in result.verdict
 
 
 def test_other_cells_have_none() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 import scipy.linalg
 import scipy.sparse as sp
@@ -10,10 +12,11 @@ from numpy.typing import NDArray
 
 from abut._core import shape_functions
 from abut.bodies.corner_pressures import KIND, CornerPressures, linear_functions, numbered
+from abut.bodies.solids import Solids
 from abut.cells import CELLS
 from abut.dofs import dofs_at
 from abut.mesh.mesh import Mesh
-from abut.mesh.quadrature import stiffness_rule
+from abut.mesh.quadrature import PRESSURES, stiffness_rule
 from abut.types import Sparse
 from abut.verify.norms import h1_matrix
 
@@ -27,7 +30,7 @@ def cell_inf_sup(mesh: Mesh, free: NDArray[np.bool_], pressures: int, length: fl
     zero at the other points.
 
     A constant that falls as the mesh is refined means pressures that no displacement feels (Chapelle and Bathe 1993)."""
-    divergence = _divergence(mesh, pressures)
+    divergence = _divergence(mesh, ((block.kind, block.nodes, pressures) for block in mesh.blocks))
     return _smallest(mesh, divergence, np.eye(divergence.shape[0]), free, length)
 
 
@@ -59,13 +62,35 @@ def _smallest(mesh: Mesh, divergence: sp.spmatrix, mass: Array, free: NDArray[np
     return float(np.sqrt(max(smallest, 0.0)))
 
 
-def _divergence(mesh: Mesh, pressures: int) -> sp.csc_matrix:
-    """(pressures of all cells, dim n_points): int q div v, the q of a cell orthonormal."""
+def mixed_products(solids: Solids, most: int) -> tuple[Sparse, Array] | None:
+    """int q div v (pressures, dim n_points) and int q q (pressures, pressures) of all mixed cells, be their pressures their
+    own (``cell_inf_sup``) or continuous (``continuous_inf_sup``). None without such cells, where pressures are more than
+    ``most``, and of axisymmetric bodies: their hoop strains are neither in these products nor in the H1 norm."""
+    own = [
+        (group.kind, group.nodes, PRESSURES[group.kind])
+        for group in solids.groups()
+        if group.integration == "mixed" and group.kind in PRESSURES
+    ]
+    shared = solids.pressures
+    count = sum(len(nodes) * pressures for _, nodes, pressures in own) + (shared.count if shared else 0)
+    if not 0 < count <= most or solids.mesh.axisymmetric:
+        return None
+    parts = [continuous_products(shared)] if shared else []
+    if own:
+        divergence = _divergence(solids.mesh, own)
+        parts.append((divergence, np.eye(divergence.shape[0])))
+    divergences, masses = zip(*parts)
+    return sp.vstack(divergences, format="csr"), scipy.linalg.block_diag(*masses)
+
+
+def _divergence(mesh: Mesh, cells: Iterable[tuple[str, NDArray[np.int32], int]]) -> sp.csc_matrix:
+    """(pressures of all cells, dim n_points): int q div v, the q of a cell orthonormal. cells: kind, nodes, pressures of
+    each."""
     rows, columns, values, done = [], [], [], 0
-    for block in mesh.blocks:
-        xi, weights = stiffness_rule(block.kind)
-        shapes, slopes = shape_functions(CELLS[block.kind].code, np.ascontiguousarray(xi))
-        x = mesh.points[block.nodes]
+    for kind, nodes, pressures in cells:
+        xi, weights = stiffness_rule(kind)
+        shapes, slopes = shape_functions(CELLS[kind].code, np.ascontiguousarray(xi))
+        x = mesh.points[nodes]
         jacobian = np.einsum("qna,cnb->cqab", slopes, x)
         volume = np.abs(np.linalg.det(jacobian)) * weights
         gradient = np.einsum("cqab,qnb->cqna", np.linalg.inv(jacobian), slopes)
@@ -75,7 +100,7 @@ def _divergence(mesh: Mesh, pressures: int) -> sp.csc_matrix:
         root = np.linalg.cholesky(np.einsum("cqm,cq,cqk->cmk", functions, volume, functions))
         functions = np.swapaxes(np.linalg.solve(root, np.swapaxes(functions, 1, 2)), 1, 2)
         own = np.einsum("cqm,cq,cqna->cmna", functions, volume, gradient)
-        dofs = dofs_at(block.nodes, mesh.dim)
+        dofs = dofs_at(nodes, mesh.dim)
         n = own.shape[0] * own.shape[1]
         rows.append(np.repeat(done + np.arange(n), dofs[0].size))
         columns.append(np.repeat(dofs.reshape(len(own), -1), pressures, axis=0).ravel())

@@ -23,7 +23,7 @@ from abut.problem.constraints import Constraints, supports
 from abut.problem.contact_pairs import pairs, with_plain_functions
 from abut.problem.pair import Pair
 from abut.types import Sparse
-from abut.verify.cell_pressures import continuous_products
+from abut.verify.cell_pressures import mixed_products
 from abut.verify.norms import facet_scale, h1_matrix, trace_norm
 from abut.verify.trace import trace_space
 
@@ -44,8 +44,8 @@ class InfSupLevel:
     both pressure norms
     (``trace``: H^-1/2; ``mesh``: h M), and how many pressures no displacement feels (beta below 1e-6; among more
     multipliers than ``DENSE`` no more than two are looked for). cells: the constant of contact pressures (``trace``) and
-    continuous pressures of mixed tet10 cells (L2) together, theory (P8); None without such cells, or where pressures are
-    more than ``DENSE``."""
+    the pressures of mixed cells (L2) together, theory (P8); None without such cells, where pressures are more than
+    ``DENSE``, and of axisymmetric bodies."""
 
     contact: str
     space: str
@@ -158,10 +158,10 @@ def _level(model: Model, contact: str | None, closed: Closed | None) -> InfSupLe
 
 def _with_cells(full: Sparse, operator: Sparse, trace: Norm, model: Model, constraints: Constraints) -> float | None:
     """As in ``InfSupLevel``."""
-    of, n = model.deformable.pressures, operator.shape[0]
-    if of is None or n + of.count > DENSE:
+    n, found = operator.shape[0], mixed_products(model.deformable, DENSE - operator.shape[0])
+    if found is None:
         return None
-    divergence, mass = continuous_products(of)
+    divergence, mass = found
     both = sp.vstack([operator, divergence @ constraints.free], format="csr")
     compliance = both @ direct.factorized(full, definite=True)(both.T.toarray())
     norm = scipy.linalg.block_diag(trace(np.eye(n)), mass)
