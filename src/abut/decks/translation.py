@@ -36,6 +36,7 @@ from abut.decks.response import responses, without_shaking
 from abut.decks.rigid import join, rigid_bodies, with_parts_coupled
 from abut.decks.rubber import of_rubber, rubber_notes
 from abut.decks.springs import spring_notes, springs
+from abut.decks.submodels import with_submodels
 from abut.decks.temperatures import history, temperatures
 from abut.decks.tied_nodes import SAME_WAY, looks, with_ties_by_node
 from abut.detection import add_surfaces, find_contacts
@@ -92,7 +93,7 @@ def load_deck(path: Path, ignore: Collection[str] = (), soft: bool = False) -> T
     Raises InputError with card, file, line and cure for what abut does not do."""
     deck = read_deck(path, ignore)
     try:
-        return translate(deck, soft)
+        return translate(with_submodels(deck), soft)
     except DeckError:
         raise
     except InputError as error:

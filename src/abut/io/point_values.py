@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -20,6 +20,7 @@ GROUPS = {"body": "body_names", "region": "region_names"}  # arrays of cells, an
 LINES = (11, 12)  # beams of two and three nodes, which hold no points between
 WIDTH = 12  # of a number in an .frd file
 MATERIAL = "    1UMAT"  # begins a line with number and name of a material, which cells have by its number
+STEP = "    1PSTEP"  # begins a line before results
 ROW = 13  # where the numbers of a row begin: after its key and the number of the node
 DERIVED = "ALL"  # the component of a vector that is its size, and stands in no row
 
@@ -38,8 +39,8 @@ class PointValues:
     bodies: Mapping[str, int] = field(default_factory=dict)
 
 
-def read_values(path: Path, array: str) -> PointValues:
-    """One array of a .vtu or .frd file, of which the last time counts.
+def read_values(path: Path, array: str, step: int | None = None) -> PointValues:
+    """One array of a .vtu or .frd file, of which the last time counts, of a step of an .frd file where one is named.
 
     Raises InputError for files that cannot be read, other kinds of files, and arrays that are not there."""
     if not path.exists():
@@ -47,13 +48,13 @@ def read_values(path: Path, array: str) -> PointValues:
     if path.suffix.lower() == ".vtu":
         return _vtu(path, array)
     if path.suffix.lower() == ".frd":
-        return _frd(path, array)
+        return _frd(path, array, step)
     raise InputError(f"{path}: values are read from .vtu and .frd files; write one of these")
 
 
-def _unknown(path: Path, array: str, known: list[str]) -> InputError:
+def _unknown(path: Path, array: str, known: list[str], of_step: str = "") -> InputError:
     there = f"; there are {', '.join(known)}" if known else "; it has none"
-    return InputError(f"{path}: no values named {array!r} at its points{nearest(array, known) or there}")
+    return InputError(f"{path}: no values named {array!r} at its points{of_step}{nearest(array, known) or there}")
 
 
 def _vtu(path: Path, array: str) -> PointValues:
@@ -96,7 +97,7 @@ def _bodies(grid: Foreign) -> tuple[NDArray[np.int64] | None, dict[str, int]]:
     return None, {}
 
 
-def _frd(path: Path, array: str) -> PointValues:
+def _frd(path: Path, array: str, step: int | None) -> PointValues:
     """Of an .frd file, whose materials are its bodies.
 
     Sections begin with "2C" (nodes), "3C" (elements) and "-4" (a name); "-1" begins a row, "-2" goes on with it."""
@@ -110,7 +111,7 @@ def _frd(path: Path, array: str) -> PointValues:
     found: dict[int, list[float]] = {}
     code, group, node, section = 0, 0, 0, ""
     try:
-        for key, line in _lines(path):
+        for key, line in _of_step(_lines(path), step):
             if line.startswith(MATERIAL):
                 bodies[line[len(MATERIAL) + 5 :].strip()] = int(line[len(MATERIAL) : len(MATERIAL) + 5])
             elif key in ("2C", "3C", "-4"):
@@ -140,7 +141,8 @@ def _frd(path: Path, array: str) -> PointValues:
     except (ValueError, KeyError, IndexError):
         raise InputError(f"{path}: not a readable .frd file of text; write it again (FILE FORMAT=ASCII)") from None
     if array not in known:
-        raise _unknown(path, array, list(dict.fromkeys(known)))
+        of_step = "" if step is None else f" in step {step}"
+        raise _unknown(path, array, list(dict.fromkeys(known)), of_step)
     return PointValues(
         np.array(points),
         tables,
@@ -157,6 +159,18 @@ def _lines(path: Path) -> Iterator[tuple[str, str]]:
         for line in file:
             text = line.rstrip("\n")
             yield text[:6].strip() if text[:6].strip() in ("2C", "3C") else text[:3].strip(), text
+
+
+def _of_step(lines: Iterable[tuple[str, str]], step: int | None) -> Iterator[tuple[str, str]]:
+    """The lines without results of other steps than one; all where that is None."""
+    here, other = 0, False
+    for key, line in lines:
+        if line.startswith(STEP):
+            here = int(line.split()[3])  # number of the results, increment, step
+        if key in ("2C", "3C", "-4"):
+            other = key == "-4" and step is not None and here != step
+        if not other:
+            yield key, line
 
 
 def _row(line: str) -> list[float]:

@@ -133,12 +133,19 @@ def result_field(
     found = read_values(path, checks.text(array, "result field: array"))
     if isinstance(body, bool) or not isinstance(body, (str, int, type(None))):
         raise InputError(f"{path}: body: expected a name or a number, got {body!r}")
+    return field_of(found, Path(path), array, component, body)
+
+
+def field_of(
+    found: PointValues, path: Path, array: str, component: str | int | None = None, body: str | int | None = None
+) -> ResultField:
+    """The same of what was read of a file. Raises InputError as ``result_field`` does."""
     number = _number(found, component, path, array)
-    mesh, used = _mesh(found, Path(path), body)
+    mesh, used = _mesh(found, path, body)
     values = found.values[used, number]
     if not np.isfinite(values).any():
         raise InputError(f"{path}: {array!r} has no values at points{'' if body is None else f' of body {body!r}'}")
-    return ResultField(Path(path), array, mesh, values, component, body)
+    return ResultField(path, array, mesh, values, component, body)
 
 
 def _number(found: PointValues, component: str | int | None, path: str | Path, array: str) -> int:

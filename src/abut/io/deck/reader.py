@@ -40,6 +40,7 @@ from abut.io.deck.section_cards import sections
 from abut.io.deck.shell_cards import nodal_thickness, normals
 from abut.io.deck.spring_cards import springs
 from abut.io.deck.step_cards import KIND, amplitudes, prescribed, split_steps, steps
+from abut.io.deck.submodel_cards import submodels
 from abut.io.deck.supported import NEEDED, opens, sift
 from abut.io.deck.user_materials import with_elastic_laws
 
@@ -103,6 +104,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
         thicknesses=nodal_thickness(cards, mesh, reasons),
         normals=normals(cards, mesh, reasons),
         requests=requests(sifted.requests),
+        submodels=submodels(cards, mesh, Path(path).parent, reasons),
         modes=opened(modes, Scene(mesh, pair_list, known), reasons),
     )
     return with_references(_changing(deck, groups, mesh, made_of, reasons))

@@ -55,8 +55,7 @@ class Hardening:
 
 @dataclass(frozen=True)
 class Rubber:
-    """kind: as in a job file, with the constants that decks give it; volume: factors of (J - 1)^2, (J - 1)^4, ...;
-    assumed: the first of these, as the deck has 0 for D1."""
+    """kind, constants: as decks give them; volume: factors of (J - 1)^2, (J - 1)^4, ...; assumed: the first, as D1 is 0."""
 
     kind: str
     constants: tuple[float, ...]
@@ -89,8 +88,7 @@ class Expansion:
 
 @dataclass(frozen=True)
 class Orientation:
-    """Local axes of a section: kind "rectangular" (a, b: vectors along x and near y) or "cylindrical" (points of the
-    axis)."""
+    """Local axes of a section: kind "rectangular" (a, b: along x and near y) or "cylindrical" (points of the axis)."""
 
     kind: str
     a: tuple[float, float, float]
@@ -304,7 +302,7 @@ class Prescribed:
     (number of a pair, 0) for the overlap that contact allows; a temperature's ``vector`` begins with its slope along the
     normal of shells; face 0 with ``vector``: gravity on the element, or a centrifugal force, a point of whose axis and its
     direction it has. amplitude: name, or "" for the ramp; frozen: of a support, held where it is as the step begins;
-    imaginary: a quarter of a period ahead."""
+    imaginary: a quarter of a period ahead; step: of the run of the global model that has the displacement, 0 for none."""
 
     kind: str  # boundary | force | pressure | gravity | centrifugal | temperature | interference | shrink
     numbers: Numbers
@@ -315,6 +313,7 @@ class Prescribed:
     vector: tuple[float, ...] = (0.0, 0.0, 0.0)
     frozen: bool = False
     imaginary: bool = False
+    step: int = 0
 
 
 @dataclass(frozen=True)
@@ -355,7 +354,7 @@ class Deck:
     contact pair asks for it; thicknesses: of shells at nodes; normals: of shells at (element, node); thin: what stands for
     the nodes of shells once they are expanded; modes: what the last step asks for beside; absences: of elements that go, or
     come; layers: of shells of several the solids, from the negative side; hinges: (m, 2) nodes that hinges join within a
-    body; stresses: of elements before the first step, one or those at integration points."""
+    body; stresses: of elements before the first step, one or those at integration points; submodels: files of nodes."""
 
     path: str
     nodes: Numbers
@@ -392,6 +391,7 @@ class Deck:
     hinges: Numbers = field(default_factory=lambda: np.empty((0, 2), np.int64))
     gathered: tuple[Gathered, ...] = ()
     stresses: Mapping[int, tuple[tuple[float, ...], ...]] = field(default_factory=dict)
+    submodels: Mapping[int, str] = field(default_factory=dict)
 
     @property
     def references(self) -> frozenset[int]:

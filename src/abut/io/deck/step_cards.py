@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from abut.errors import nearest
-from abut.io.deck.cards import Card, Line, as_float, key
+from abut.io.deck.cards import Card, Line, as_float, as_integer, key
 from abut.io.deck.mesh_cards import MeshCards, face_number
 from abut.io.deck.reasons import Reasons
 from abut.io.deck.record import Amplitude, Increments, Prescribed, Step
@@ -180,11 +180,25 @@ def prescribed(card: Card, mesh: MeshCards, known: Mapping[str, Amplitude]) -> l
     read = _between_planes if card.has("LINTEMP") else _LINES[card.key]
     found = [value for line in card.lines for value in read(line, amplitude, mesh)]
     found = [replace(value, imaginary=True) for value in found] if case == "2" else found
+    if card.has("SUBMODEL") or card.has("STEP"):
+        return _of_global(card, found)
     if not card.has("FIXED"):
         return found
     if amplitude or any(value.value for value in found):
         raise card.error("FIXED: nodes that are held where they are have neither a displacement nor an amplitude")
     return [replace(value, frozen=True) for value in found]
+
+
+def _of_global(card: Card, values: Sequence[Prescribed]) -> list[Prescribed]:
+    """Supports that take their displacements from a step of the global model."""
+    if not (card.has("SUBMODEL") and card.has("STEP")) or card.has("AMPLITUDE") or card.has("FIXED"):
+        raise card.error("SUBMODEL and STEP go together, and with neither AMPLITUDE nor FIXED; write them so")
+    step = as_integer(card.need("STEP"))
+    if step is None or step < 1:
+        raise card.error(f"STEP={card.get('STEP')}: expected the number of a step, from 1")
+    if any(line.text(3) for line in card.lines):
+        raise card.error("SUBMODEL: displacements come from the result file; take their values out")
+    return [replace(value, step=step) for value in values]
 
 
 def _boundary(line: Line, amplitude: str, mesh: MeshCards) -> list[Prescribed]:

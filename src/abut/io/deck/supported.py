@@ -48,7 +48,8 @@ READ: dict[str, tuple[str, ...]] = {
     "USER SECTION": ("ELSET", "MATERIAL", "CONSTANTS"),
     "MEMBRANE SECTION": ("ELSET", "MATERIAL", "ORIENTATION", "OFFSET", "NODAL THICKNESS"),
     "SOLID SECTION": ("ELSET", "MATERIAL", "ORIENTATION", "NODAL THICKNESS", "CONTROLS", "OFFSET"),
-    "BOUNDARY": ("OP", "NAME", "AMPLITUDE", "TYPE", "LOAD CASE", "FIXED", "TIME DELAY"),
+    "BOUNDARY": ("OP", "NAME", "AMPLITUDE", "TYPE", "LOAD CASE", "FIXED", "TIME DELAY", "SUBMODEL", "STEP"),
+    "SUBMODEL": ("TYPE", "INPUT"),
     "CLOAD": ("OP", "NAME", "AMPLITUDE", "LOAD CASE", "TIME DELAY"),
     "DLOAD": ("OP", "NAME", "AMPLITUDE", "LOAD CASE", "TIME DELAY"),
     "DSLOAD": ("OP", "NAME", "AMPLITUDE", "LOAD CASE", "TIME DELAY"),
@@ -143,10 +144,10 @@ STEP_PROCEDURES = _PROCEDURES | {"STATIC"}
 
 
 def opens(card: str, parameters: Mapping[str, str | None]) -> bool:
-    """Whether the file that INPUT names is read: not for what is refused, whatever stands in it."""
+    """Whether the file that INPUT names has lines of the card: not for what is refused, whatever stands in it."""
     code = key(parameters.get("TYPE") or "")
     supported = card != "ELEMENT" or code in ELEMENTS or code in spring_cards.NODES
-    return supported and "INPUT" in _READ.get(card, ())
+    return supported and card != "SUBMODEL" and "INPUT" in _READ.get(card, ())
 
 
 @dataclass(frozen=True)
