@@ -55,8 +55,8 @@ class Hardening:
 
 @dataclass(frozen=True)
 class Rubber:
-    """kind: as in a job file, with the constants that decks give it; volume: factors of (J - 1)^2, (J - 1)^4, ...;
-    assumed: the first of these, as the deck has 0 for D1."""
+    """kind: as in a job file, with the constants that decks give it; volume: factors of (J - 1)^2, (J - 1)^4, ...; assumed:
+    the first of these, as the deck has 0 for D1."""
 
     kind: str
     constants: tuple[float, ...]
@@ -109,6 +109,7 @@ class Material:
     place: Place
     rubber: Rubber | None = None
     hardening: tuple[tuple[float, Hardening], ...] = ()  # by temperature, growing
+    weighed: bool = False  # the deck gives a density, be it 0
 
     @property
     def directed(self) -> bool:
@@ -127,12 +128,11 @@ class Layer:
 
 @dataclass(frozen=True)
 class Section:
-    """name: the element set; thickness: of plane elements and shells, 0 of shells whose nodes have
-    one each; orientation: None for the global axes; offset: of a
-    shell, its nodes from the mid-surface along the normal over the thickness. Of a beam: widths along the first
-    direction, near ``axis``, and the second, its nodes from the centre over these, its form
-    (``mesh.thin.beams.OUTLINES``) and the walls of a hollow one, at its sides -1, -2, 1, 2. layers: of a shell, from its
-    negative side, whose first one's material stands for all until they are solids."""
+    """name: the element set; thickness: of plane elements and shells, 0 where their nodes have one each; orientation: None
+    for the global axes; offset: of a shell, its nodes from the mid-surface along the normal over the thickness. Of a beam:
+    widths along the first direction, near ``axis``, and the second (``nodal``: those of its nodes), its nodes from the
+    centre over these, its form (``mesh.thin.beams.OUTLINES``) and the walls of a hollow one, at its sides -1, -2, 1, 2.
+    layers: of a shell, from its negative side, whose first one's material stands for all until they are solids."""
 
     name: str
     elements: Numbers
@@ -147,6 +147,7 @@ class Section:
     form: str = "rectangle"
     walls: tuple[float, ...] = (0.0,) * 4
     layers: tuple[Layer, ...] = ()
+    nodal: bool = False
 
 
 @dataclass(frozen=True)
@@ -289,13 +290,14 @@ class CyclicSymmetry:
 
 @dataclass(frozen=True)
 class PreTension:
-    """The surface inside a bolt that is cut open, the node whose direction 1 is the opening and its force, the normal
-    (None: that of the surface)."""
+    """The surface inside a bolt that is cut open, the node whose direction 1 is the opening and its force, the normal (None:
+    that of the surface); in place of the surface the number of a beam, else 0."""
 
     surface: str
     node: int
     normal: tuple[float, float, float] | None
     place: Place
+    element: int = 0
 
 
 @dataclass(frozen=True)
@@ -351,11 +353,12 @@ class Amplitude:
 @dataclass(frozen=True)
 class Deck:
     """A whole deck. nodes (n,) sorted; points (n, 3); sets and surfaces by name as the deck first spells it; fixed: supports
-    outside the steps; initial: node -> temperature; quiet, ignored: see ``supported.Sifted``; small_sliding: a
-    contact pair asks for it; thicknesses: of shells at nodes; normals: of shells at (element, node); thin: what stands for
-    the nodes of shells once they are expanded; modes: what the last step asks for beside; absences: of elements that go, or
-    come; layers: of shells of several the solids, from the negative side; hinges: (m, 2) nodes that hinges join within a
-    body; stresses: of elements before the first step, one or those at integration points."""
+    outside the steps; initial: node -> temperature; quiet, ignored: see ``supported.Sifted``; small_sliding: a contact pair
+    asks for it; thicknesses: at nodes of shells and plane elements, and of beams along both directions; normals: of shells
+    at (element, node); thin: what stands for the nodes of shells once they are expanded; modes: what the last step asks for
+    beside; absences: of elements that go, or come; layers: of shells of several the solids, from the negative side; hinges:
+    (m, 2) nodes that hinges join within a body; stresses: of elements before the first step, one or those at integration
+    points."""
 
     path: str
     nodes: Numbers
@@ -382,7 +385,7 @@ class Deck:
     small_sliding: bool = False
     couplings: tuple[Coupling, ...] = ()
     springs: tuple[Spring, ...] = ()
-    thicknesses: Mapping[int, float] = field(default_factory=dict)
+    thicknesses: Mapping[int, tuple[float, float]] = field(default_factory=dict)
     normals: Mapping[tuple[int, int], tuple[float, float, float]] = field(default_factory=dict)
     thin: Mapping[int, Thin] = field(default_factory=dict)
     requests: tuple[Request, ...] = ()
