@@ -11,8 +11,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from abut.io.deck.pretension_record import PreTension
 from abut.io.deck.reasons import DeckError
-from abut.io.deck.record import Block, Deck, Equation, Prescribed, PreTension
+from abut.io.deck.record import Block, Deck, Equation, Prescribed
 
 Vector = NDArray[np.float64]
 CARD = "*PRE-TENSION SECTION: ELEMENT"

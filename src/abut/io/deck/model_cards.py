@@ -15,6 +15,7 @@ from abut.io.deck.gathered import Gathered
 from abut.io.deck.mesh_cards import MeshCards
 from abut.io.deck.multipoint_cards import gathered, multipoint
 from abut.io.deck.plastic_cards import hardening
+from abut.io.deck.pretension_record import PreTension
 from abut.io.deck.reasons import Reasons
 from abut.io.deck.record import (
     NO_CONSTANTS,
@@ -24,7 +25,6 @@ from abut.io.deck.record import (
     Expansion,
     Material,
     Numbers,
-    PreTension,
     RigidBody,
     Transform,
 )

@@ -13,6 +13,7 @@ from abut.io.deck.elements import ElementType
 from abut.io.deck.gathered import Gathered
 from abut.io.deck.mode_cards import Modes
 from abut.io.deck.output_cards import Request
+from abut.io.deck.pretension_record import PreTension
 from abut.io.deck.reasons import Place
 from abut.io.deck.thin_record import Thin
 
@@ -286,18 +287,6 @@ class CyclicSymmetry:
     a: tuple[float, float, float]
     b: tuple[float, float, float]
     place: Place
-
-
-@dataclass(frozen=True)
-class PreTension:
-    """The surface inside a bolt that is cut open, the node whose direction 1 is the opening and its force, the normal (None:
-    that of the surface); in place of the surface the number of a beam, else 0."""
-
-    surface: str
-    node: int
-    normal: tuple[float, float, float] | None
-    place: Place
-    element: int = 0
 
 
 @dataclass(frozen=True)
