@@ -88,7 +88,9 @@ def test_unlike_meshes_are_of_second_order(cell: str, facets: tuple[int, int]) -
         base = mesh.nodes_of("block.bottom")
         toe = base[np.argmax(mesh.points[base, 0])]
         error = abs(-100.0 * step.displacement[toe, 1] / wanted - 1.0)
-        assert error < slope * (BASE / coarse) ** 2 / 3.0 / WEIGHT  # a kink within a facet is missed by an eighth, or two
+        assert (
+            error < slope * (BASE / coarse) ** 2 / 3.0 / WEIGHT
+        )  # a kink within a facet is missed by an eighth, or two
 
 
 @pytest.mark.parametrize("pressure", ["P1", "dual"])

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from abut.decks.rings import in_rings
 from abut.decks.solid_blocks import by_block, free_numbers, sections_of, with_solids
-from abut.decks.thin import renamed
+from abut.decks.thin import at_nodes, renamed
 from abut.io.deck.reasons import DeckError, Place
 from abut.io.deck.record import Block, Coupling, Deck, Equation, Numbers, Section
 from abut.io.deck.thin_record import Thin
@@ -65,7 +65,7 @@ def _ordered(block: Block) -> Numbers:
 def _sections(deck: Deck, block: Block) -> list[Section]:
     result = sections_of(deck, block, "element", CARD)
     for number, section in zip(block.ids.tolist(), result):
-        if not section.widths[0]:
+        if not section.widths[0] and not section.nodal:
             raise DeckError(block.place, f"*ELEMENT: element {number} without {CARD}; give its set a section")
     return result
 
@@ -92,7 +92,7 @@ def _solid(deck: Deck, blocks: list[Block]) -> Sections:
     beam = Beam(
         np.concatenate([np.searchsorted(deck.nodes, _ordered(block)) for block in blocks]),
         np.array([section.axis for section in sections]),
-        np.array([section.widths for section in sections]),
+        np.concatenate([_widths(deck, block) for block in blocks]),
         np.array([section.offsets for section in sections]),
         np.array([section.walls for section in sections]),
         sections[0].form,
@@ -104,6 +104,15 @@ def _solid(deck: Deck, blocks: list[Block]) -> Sections:
         raise DeckError(
             blocks[0].place, f"*ELEMENT: beam {number} has no length, or lies along the first direction of its section"
         ) from None
+
+
+def _widths(deck: Deck, block: Block) -> NDArray[np.float64]:
+    """(n, 3, 2) at start, end and middle of each element: those of its section, or of its nodes."""
+    ordered = replace(block, nodes=_ordered(block))
+    sections = _sections(deck, block)
+    nodal = np.array([section.nodal for section in sections])
+    own = np.array([section.widths for section in sections])[:, None]
+    return np.where(nodal[:, None, None], at_nodes(deck, ordered, nodal), own)
 
 
 def _bound(deck: Deck, new: Deck, made: Mapping[int, list[Made]], place: Place, finite: bool) -> Deck:

@@ -32,6 +32,8 @@ def body_loads(deck: Deck, parts: Mapping[str, Piece], plane: str | None) -> Ite
                 if not np.isin(piece.elements[0], elements):
                     continue
                 _check_density(deck, kind, piece)
+                if piece.section.material.density == 0.0:
+                    continue
                 if kind == "gravity":
                     yield Gravity(tuple(size * x for x in vector[: 2 if plane else 3]), name, amplitude)
                     continue
@@ -56,7 +58,7 @@ def _centrifugal(
 
 def _check_density(deck: Deck, kind: str, piece: Piece) -> None:
     material = piece.section.material
-    if material.density == 0.0:
+    if not material.weighed:
         place = next(v.place for s in deck.steps for v in s.values if v.kind == kind)
         what = "gravity needs" if kind == "gravity" else "CENTRIF needs"
         raise DeckError(place, f"*DLOAD: {what} a *DENSITY of material '{material.name}'")

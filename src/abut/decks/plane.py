@@ -6,11 +6,12 @@ from abut.io.deck.record import Deck
 
 
 def solid_planes(deck: Deck) -> bool:
-    """Whether plane and axisymmetric elements are to become solids: where they are of several kinds or thicknesses, or
-    beside others."""
+    """Whether plane and axisymmetric elements are to become solids: where they are of several kinds or thicknesses, have
+    one at each node, or are beside others."""
     kinds = {block.type.plane for block in deck.blocks}
     if len(kinds) == 1:
-        return kinds <= {"strain", "stress"} and len({section.thickness for section in deck.sections}) > 1
+        each = {section.thickness for section in deck.sections}
+        return kinds <= {"strain", "stress"} and (len(each) > 1 or each == {0.0})
     return bool(kinds)
 
 

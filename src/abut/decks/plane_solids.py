@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from abut.decks.plane import solid_planes
 from abut.decks.solid_blocks import free_numbers, sections_of
-from abut.decks.thin import renamed
+from abut.decks.thin import at_nodes, renamed
 from abut.io.deck.elements import LAYER
 from abut.io.deck.faces import free_faces
 from abut.io.deck.reasons import DeckError
@@ -38,10 +38,10 @@ Vector = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class _Layer:
-    """Elements of one kind and thickness. cells: (n, k) rows of ``nodes`` (m,); points: (m, 3, 3) below, halfway, above."""
+    """Elements of one kind and thickness, or with one at each node. cells: (n, k) rows of ``nodes`` (m,); points: (m, 3, 3)
+    below, halfway, above."""
 
     block: Block
-    thickness: float
     nodes: Numbers
     cells: Numbers
     points: Vector
@@ -120,12 +120,17 @@ def _layers(deck: Deck, turned: bool) -> list[_Layer]:
             part = replace(block, ids=block.ids[here], nodes=block.nodes[here])
             cells = rows.reshape(part.nodes.shape)
             at = deck.points[np.searchsorted(deck.nodes, nodes)]
-            result.append(_Layer(part, thickness, nodes, cells, _across(at, cells, thickness, block)))
+            thick = np.full((len(nodes), 1), thickness)
+            if not (thickness or round_):
+                own = at_nodes(deck, part, np.ones(len(part.ids), bool))[:, :, 0]
+                thick[cells.ravel(), 0] = own.ravel() / (SECTORS if turned else 1)
+            result.append(_Layer(part, nodes, cells, _across(at, cells, thick, block)))
     return result
 
 
-def _across(at: Vector, cells: Numbers, thickness: float, block: Block) -> Vector:
-    """Points (m, 3, 3) below, halfway and above; above is where elements turn clockwise seen from there."""
+def _across(at: Vector, cells: Numbers, thickness: Vector, block: Block) -> Vector:
+    """Points (m, 3, 3) below, halfway and above; above is where elements turn clockwise seen from there.
+    thickness: (m, 1)."""
     height = np.array([-1.0, 0.0, 1.0])
     x = at[cells[0, :3], :2]
     if np.linalg.det(x[1:] - x[0]) < 0.0:

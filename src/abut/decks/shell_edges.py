@@ -45,7 +45,7 @@ def quadratic(deck: Deck) -> tuple[Deck, Numbers, Numbers]:
         fixed=tuple(middles.held(value) for value in deck.fixed),
         rigid=tuple(replace(body, nodes=middles.within(body.nodes)) for body in deck.rigid),
         couplings=tuple(middles.coupled(bound) for bound in deck.couplings),
-        thicknesses=every.mean(deck.thicknesses),
+        thicknesses=every.both(deck.thicknesses),
         initial=every.mean(deck.initial),
         steps=tuple(every.warmed(middles.of_step(step)) for step in deck.steps),
     )
@@ -81,6 +81,11 @@ class _Middles:
                 if a in known and b in known:
                     result[node] = 0.5 * (known[a] + known[b])
         return result
+
+    def both(self, known: Mapping[int, tuple[float, float]]) -> dict[int, tuple[float, float]]:
+        """The same of pairs of values."""
+        first, second = (self.mean({node: pair[i] for node, pair in known.items()}) for i in (0, 1))
+        return {node: (value, second[node]) for node, value in first.items()}
 
     def warmed(self, step: Step) -> Step:
         """A step with temperatures in the middle."""

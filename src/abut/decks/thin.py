@@ -59,6 +59,7 @@ def _with_solids(deck: Deck, blocks: list[Block], solid: Expanded, finite: bool,
     thin = _thin(deck, solid, number, rigid)
     if finite:
         _check_turned(deck, thin)
+        thin |= {node: Thin(thin[node].own) for node in _turned(deck) & thin.keys()}
     knots = [node for node, each in thin.items() if each.along is None]
     stand_for, heights = nodes_through(deck, solid, number)
     deck = with_solids(deck, "shell", solid.points, number, [(kind, cells[0]) for kind, cells in solid.cells])
@@ -116,18 +117,25 @@ def offsets_of(deck: Deck, block: Block, card: str) -> Vector:
 def thickness_at(deck: Deck, block: Block, card: str) -> Vector:
     """(n, k) at each node of each element: that of the section, or of the nodes where it says so. card: that has sections of
     such elements."""
-    own = np.zeros(len(deck.nodes))
-    for node, value in deck.thicknesses.items():
-        own[np.searchsorted(deck.nodes, node)] = value
-    nodes = np.searchsorted(deck.nodes, block.nodes)
     sections = np.array([section.thickness for section in sections_of(deck, block, "element", card)])
-    result = np.where(sections[:, None] > 0.0, sections[:, None], own[nodes])
-    bare = np.argwhere(result <= 0.0)
+    given = sections[:, None] > 0.0
+    own = at_nodes(deck, block, np.asarray(~given.all(axis=1)))[:, :, 0]
+    return np.where(given, sections[:, None], own)
+
+
+def at_nodes(deck: Deck, block: Block, asked: NDArray[np.bool_]) -> Vector:
+    """(n, k, 2): both thicknesses of *NODAL THICKNESS at the nodes of each element, 0 where there is none. Raises InputError
+    for elements ``asked`` (n,) without one."""
+    own = np.zeros((len(deck.nodes), 2))
+    for node, pair in deck.thicknesses.items():
+        own[np.searchsorted(deck.nodes, node)] = pair
+    result = own[np.searchsorted(deck.nodes, block.nodes)]
+    bare = np.flatnonzero(asked & (result[:, :, 0] <= 0.0).any(axis=1))
     if len(bare):
-        element = int(block.ids[bare[0][0]])
         raise DeckError(
             block.place,
-            f"*ELEMENT: {block.type.thin} {element} has no thickness at one of its nodes; give it in *NODAL THICKNESS",
+            f"*ELEMENT: {block.type.thin or 'element'} {block.ids[bare[0]]} has no thickness at one of its nodes; give it "
+            "in *NODAL THICKNESS",
         )
     return np.asarray(result)
 
@@ -143,17 +151,23 @@ def normals_at(deck: Deck, block: Block) -> Vector:
     return result
 
 
+def _turned(deck: Deck) -> set[int]:
+    """Nodes with turns prescribed other than zero."""
+    every = [*deck.fixed, *(value for step in deck.steps for value in step.values)]
+    turns = [v for v in every if v.kind == "boundary" and v.value != 0.0 and max(v.directions) > 3]
+    return {node for value in turns for node in value.numbers.tolist()}
+
+
 def _check_turned(deck: Deck, thin: Mapping[int, Thin]) -> None:
-    """Raise InputError for moments, and turns other than zero, at nodes with one normal, which large turns would bend."""
-    for value in (*deck.fixed, *(value for step in deck.steps for value in step.values)):
-        turns = value.kind in ("boundary", "force") and value.value != 0.0 and max(value.directions) > 3
-        for node in value.numbers.tolist() if turns else ():
+    """Raise InputError for moments, and turns in equations, of nodes with one normal, which large turns would bend."""
+    for value in (value for step in deck.steps for value in step.values):
+        moment = value.kind == "force" and value.value != 0.0 and max(value.directions) > 3
+        for node in value.numbers.tolist() if moment else ():
             if node in thin and thin[node].along is not None:
-                what = "*CLOAD: moments" if value.kind == "force" else "*BOUNDARY: turns other than zero"
                 raise DeckError(
                     value.place,
-                    f"{what} at nodes of shells need small displacements; leave NLGEOM out, or couple the nodes of the edge "
-                    "to a node of its own (*COUPLING) and move that",
+                    "*CLOAD: moments at nodes of shells need small displacements; leave NLGEOM out, or couple the nodes of "
+                    "the edge to a node of its own (*COUPLING) and move that",
                 )
     for equation in deck.equations:
         if any(

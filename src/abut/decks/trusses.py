@@ -26,8 +26,8 @@ Vector = NDArray[np.float64]
 def with_thick_trusses(deck: Deck) -> Deck:
     """The deck with its trusses expanded; its shells and beams already are.
 
-    Raises InputError for trusses without a section or a length, for turns and moments at their nodes, and for nodes that a
-    shell, a beam or a coupling has as well."""
+    Raises InputError for trusses without a section or a length, for turns and moments at their nodes, and for nodes that
+    are references of couplings."""
     blocks = [block for block in deck.blocks if block.type.thin == "truss"]
     if not blocks:
         return deck
@@ -40,6 +40,10 @@ def with_thick_trusses(deck: Deck) -> Deck:
         np.abs(along[:, 2:]) < 0.7 * np.linalg.norm(along, axis=1, keepdims=True), [[0, 0, 1.0]], [[1.0, 0, 0]]
     )
     widths = np.repeat(np.sqrt([section.thickness for section in sections])[:, None], 2, axis=1)
+    if not widths.all():
+        raise DeckError(
+            blocks[0].place, "*ELEMENT: a truss has one area, not one at each node; give it in *SOLID SECTION"
+        )
     rows = np.arange(own.size).reshape(own.shape)  # no bar shares a section with another
     try:
         solid = expand_beams(
@@ -57,8 +61,9 @@ def with_thick_trusses(deck: Deck) -> Deck:
     place = blocks[0].place
     hinges, first = list[Equation](), dict[int, Thin]()
     for node, each in made.items():
-        shared = node in solids
-        base = {node: -1.0} if shared else {n: -w for n, w in each[0].shares}
+        shared = node in solids or node in deck.thin
+        stands = {node: 1.0} if node in solids else dict(deck.thin.get(node, each[0]).shares)
+        base = {n: -w for n, w in stands.items()}
         first |= {} if shared else {node: each[0]}
         for bar in each if shared else each[1:]:
             terms = [*bar.shares, *base.items()]
@@ -86,14 +91,14 @@ def _ordered(block: Block) -> Numbers:
 
 
 def _check(deck: Deck, block: Block, own: Numbers) -> None:
-    """Raise InputError for nodes of other thin elements and couplings, and for turns and moments."""
+    """Raise InputError for nodes that are references of couplings, and for turns and moments."""
     references = {bound.reference for bound in deck.couplings} | {body.reference for body in deck.rigid}
     nodes = set(own.ravel().tolist())
-    for node in sorted(nodes & (deck.thin.keys() | references))[:1]:
+    for node in sorted(nodes & references)[:1]:
         raise DeckError(
             block.place,
-            f"*ELEMENT: node {node} belongs to a truss and to a shell, a beam or a coupling; give the truss a node of its "
-            "own, and join them by *EQUATION",
+            f"*ELEMENT: node {node} belongs to a truss and is the reference of a coupling, or of shells and beams that meet "
+            "there; give the truss a node of its own, and join them by *EQUATION",
         )
     for value in (*deck.fixed, *(value for step in deck.steps for value in step.values)):
         turned = value.kind in ("boundary", "force") and max(value.directions) > 3

@@ -15,6 +15,7 @@ from abut.io.deck.gathered import Gathered
 from abut.io.deck.mesh_cards import MeshCards
 from abut.io.deck.multipoint_cards import gathered, multipoint
 from abut.io.deck.plastic_cards import hardening
+from abut.io.deck.pretension_record import PreTension
 from abut.io.deck.reasons import Reasons
 from abut.io.deck.record import (
     NO_CONSTANTS,
@@ -24,7 +25,6 @@ from abut.io.deck.record import (
     Expansion,
     Material,
     Numbers,
-    PreTension,
     RigidBody,
     Transform,
 )
@@ -69,7 +69,7 @@ def _material(card: Card, following: Sequence[Card]) -> Material:
     metal = hardening(options)
     if law is not None or metal:
         _check_plain(options, constants, swelling, law is not None)
-    return Material(name, constants, density, swelling, card.place, law, metal)
+    return Material(name, constants, density, swelling, card.place, law, metal, "DENSITY" in options)
 
 
 def _check_plain(options: Mapping[str, Card], constants: Elastic, swelling: Expansion, rubber: bool) -> None:
@@ -262,9 +262,6 @@ def pretension_sections(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons
 
 
 def _pretension(card: Card, mesh: MeshCards) -> PreTension:
-    name = card.need("SURFACE")
-    if name.upper() not in mesh.surfaces:
-        raise card.unknown(f"no surface named {name!r}{nearest(name, [s.name for s in mesh.surfaces.values()])}")
     normal = None
     if card.lines:
         line = card.lines[0]
@@ -272,4 +269,20 @@ def _pretension(card: Card, mesh: MeshCards) -> PreTension:
         if normal == (0.0, 0.0, 0.0):
             raise line.error("the normal is zero; leave the line out for the surface's own")
     node = one_node(card, "NODE", mesh)
+    if card.has("ELEMENT"):
+        return PreTension("", node, normal, card.place, _one_element(card, mesh))
+    name = card.need("SURFACE")
+    if name.upper() not in mesh.surfaces:
+        raise card.unknown(f"no surface named {name!r}{nearest(name, [s.name for s in mesh.surfaces.values()])}")
     return PreTension(mesh.surfaces[name.upper()].name, node, normal, card.place)
+
+
+def _one_element(card: Card, mesh: MeshCards) -> int:
+    """The element that ELEMENT names, by its number or a set of it alone."""
+    text = card.need("ELEMENT")
+    number = as_integer(text)
+    sets = mesh.element_sets.sets
+    every = [number] if number is not None else sets[text.upper()].tolist() if text.upper() in sets else []
+    if len(every) != 1:
+        raise card.error(f"ELEMENT: expected an element number or a set of one element, got {text!r}")
+    return every[0]

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from abut.cells import CELLS
 from abut.io.deck.faces import connectivity, free_faces, surface_rows
+from abut.io.deck.pretension_record import PreTension
 from abut.io.deck.reasons import DeckError
-from abut.io.deck.record import Block, Deck, Equation, Numbers, PreTension
+from abut.io.deck.record import Block, Deck, Equation, Numbers
 
 
 def cut(deck: Deck) -> Deck:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from abut.io.deck.assembly import without_parts
+from abut.io.deck.beam_pretension import without_pulled_beams
 from abut.io.deck.cards import Card, key, of, read_cards
 from abut.io.deck.changed_sections import with_changed_sections
 from abut.io.deck.contact_cards import general_contact, pairs
@@ -107,7 +108,7 @@ def read_deck(path: Path, ignore: Collection[str] = ()) -> Deck:
         submodels=submodels(cards, mesh, Path(path).parent, reasons),
         modes=opened(modes, Scene(mesh, pair_list, known), reasons),
     )
-    return with_references(_changing(deck, groups, mesh, made_of, reasons))
+    return with_references(without_pulled_beams(_changing(deck, groups, mesh, made_of, reasons)))
 
 
 def _changing(

@@ -13,6 +13,7 @@ from abut.io.deck.elements import ElementType
 from abut.io.deck.gathered import Gathered
 from abut.io.deck.mode_cards import Modes
 from abut.io.deck.output_cards import Request
+from abut.io.deck.pretension_record import PreTension
 from abut.io.deck.reasons import Place
 from abut.io.deck.thin_record import Thin
 
@@ -107,6 +108,7 @@ class Material:
     place: Place
     rubber: Rubber | None = None
     hardening: tuple[tuple[float, Hardening], ...] = ()  # by temperature, growing
+    weighed: bool = False  # the deck gives a density, be it 0
 
     @property
     def directed(self) -> bool:
@@ -125,12 +127,11 @@ class Layer:
 
 @dataclass(frozen=True)
 class Section:
-    """name: the element set; thickness: of plane elements and shells, 0 of shells whose nodes have
-    one each; orientation: None for the global axes; offset: of a
-    shell, its nodes from the mid-surface along the normal over the thickness. Of a beam: widths along the first
-    direction, near ``axis``, and the second, its nodes from the centre over these, its form
-    (``mesh.thin.beams.OUTLINES``) and the walls of a hollow one, at its sides -1, -2, 1, 2. layers: of a shell, from its
-    negative side, whose first one's material stands for all until they are solids."""
+    """name: the element set; thickness: of plane elements and shells, 0 where their nodes have one each; orientation: None
+    for the global axes; offset: of a shell, its nodes from the mid-surface along the normal over the thickness. Of a beam:
+    widths along the first direction, near ``axis``, and the second (``nodal``: those of its nodes), its nodes from the
+    centre over these, its form (``mesh.thin.beams.OUTLINES``) and the walls of a hollow one, at its sides -1, -2, 1, 2.
+    layers: of a shell, from its negative side, whose first one's material stands for all until they are solids."""
 
     name: str
     elements: Numbers
@@ -145,6 +146,7 @@ class Section:
     form: str = "rectangle"
     walls: tuple[float, ...] = (0.0,) * 4
     layers: tuple[Layer, ...] = ()
+    nodal: bool = False
 
 
 @dataclass(frozen=True)
@@ -286,17 +288,6 @@ class CyclicSymmetry:
 
 
 @dataclass(frozen=True)
-class PreTension:
-    """The surface inside a bolt that is cut open, the node whose direction 1 is the opening and its force, the normal
-    (None: that of the surface)."""
-
-    surface: str
-    node: int
-    normal: tuple[float, float, float] | None
-    place: Place
-
-
-@dataclass(frozen=True)
 class Prescribed:
     """A value at keys: (node, direction) for supports and forces, (element, face) for pressures, (node,) for temperatures,
     (number of a pair, 0) for the overlap that contact allows; a temperature's ``vector`` begins with its slope along the
@@ -350,11 +341,12 @@ class Amplitude:
 @dataclass(frozen=True)
 class Deck:
     """A whole deck. nodes (n,) sorted; points (n, 3); sets and surfaces by name as the deck first spells it; fixed: supports
-    outside the steps; initial: node -> temperature; quiet, ignored: see ``supported.Sifted``; small_sliding: a
-    contact pair asks for it; thicknesses: of shells at nodes; normals: of shells at (element, node); thin: what stands for
-    the nodes of shells once they are expanded; modes: what the last step asks for beside; absences: of elements that go, or
-    come; layers: of shells of several the solids, from the negative side; hinges: (m, 2) nodes that hinges join within a
-    body; stresses: of elements before the first step, one or those at integration points; submodels: files of nodes."""
+    outside the steps; initial: node -> temperature; quiet, ignored: see ``supported.Sifted``; small_sliding: a contact pair
+    asks for it; thicknesses: at nodes of shells and plane elements, and of beams along both directions; normals: of shells
+    at (element, node); thin: what stands for the nodes of shells once they are expanded; modes: what the last step asks for
+    beside; absences: of elements that go, or come; layers: of shells of several the solids, from the negative side; hinges:
+    (m, 2) nodes that hinges join within a body; stresses: of elements before the first step, one or those at integration
+    points; submodels: files of nodes."""
 
     path: str
     nodes: Numbers
@@ -381,7 +373,7 @@ class Deck:
     small_sliding: bool = False
     couplings: tuple[Coupling, ...] = ()
     springs: tuple[Spring, ...] = ()
-    thicknesses: Mapping[int, float] = field(default_factory=dict)
+    thicknesses: Mapping[int, tuple[float, float]] = field(default_factory=dict)
     normals: Mapping[tuple[int, int], tuple[float, float, float]] = field(default_factory=dict)
     thin: Mapping[int, Thin] = field(default_factory=dict)
     requests: tuple[Request, ...] = ()

@@ -93,8 +93,6 @@ PARAMETERS = {  # of cards that are read
     ("SUBMODEL", "GLOBALELSET"): "parts of the global model are not told apart; write a result file of the part alone",
     ("INITIAL CONDITIONS", "USER"): "user subroutines are not read; give numbers",
     ("AMPLITUDE", "USER"): "user subroutines are not read; give a table of times and factors",
-    ("PRE-TENSION SECTION", "ELEMENT"): "pre-tension of beams is not read; take the beam out and give its force by "
-    "*CLOAD at what its two nodes hold, or a bolt of solids and SURFACE",
     ("SPRING", "ORIENTATION"): "axes of its own are not read; give springs along the global axes, or SPRINGA",
     ("TIE", "MULTISTAGE"): "multistage ties are not supported; model one stage",
     ("TIE", "FLUIDCYCLIC"): _FLOW,

@@ -13,7 +13,7 @@ from abut.io.deck.cards import Card, Line, as_float, of
 from abut.io.deck.distributions import axes_by_elements
 from abut.io.deck.elastic_cards import orientation
 from abut.io.deck.mesh_cards import MeshCards
-from abut.io.deck.reasons import Place, Reasons
+from abut.io.deck.reasons import DeckError, Place, Reasons
 from abut.io.deck.record import NO_CONSTANTS, Expansion, Layer, Material, Orientation, Section
 
 
@@ -31,12 +31,15 @@ def sections(
                 section = section if elements is None else replace(section, elements=elements)
                 result = [replace(s, elements=np.setdiff1d(s.elements, section.elements)) for s in result]
                 result.append(section)
-    return tuple(s for s in result if len(s.elements))
+    left = tuple(s for s in result if len(s.elements))
+    for section in (s for s in left if not all(layer.thickness for layer in s.layers)):
+        reasons.add(DeckError(section.place, "*SHELL SECTION: thickness of the layer: expected a number > 0, got 0"))
+    return left
 
 
 def _section(card: Card, mesh: MeshCards, known: Mapping[str, Material] | None, axes: Mapping[str, Card]) -> Section:
     if card.has("NODAL THICKNESS"):
-        raise card.error("NODALTHICKNESS: a thickness for each node is not supported; give the section one thickness")
+        return _of_elements(card, mesh, known, axes, 0.0)
     thickness = card.lines[0].number(0, "thickness", 1.0) if card.lines else 1.0
     if not thickness > 0.0:
         raise card.lines[0].error(f"thickness: expected a number > 0, got {thickness:g}")
@@ -78,7 +81,7 @@ def _layers(card: Card, known: Mapping[str, Material] | None, axes: Mapping[str,
     result = []
     for line in card.lines:
         thickness, fields = line.number(0, "thickness of the layer"), [*line.fields, "", "", ""]
-        if not thickness > 0.0:
+        if not thickness >= 0.0:
             raise line.error(f"thickness of the layer: expected a number > 0, got {thickness:g}")
         if not fields[2]:
             raise line.error("the layer has no material; write thickness, , material, orientation")
@@ -110,6 +113,7 @@ def _beam_section(
     section = _of_elements(card, mesh, known, axes, 0.0)
     return replace(
         section,
+        nodal=card.has("NODAL THICKNESS"),
         widths=widths,
         axis=axis,
         offsets=(offsets[0], offsets[1]),

@@ -1,4 +1,4 @@
-"""Thickness and normals of shells at their nodes."""
+"""Thickness at nodes of shells, beams and plane elements, and normals of shells there."""
 
 from __future__ import annotations
 
@@ -9,16 +9,17 @@ from abut.io.deck.mesh_cards import MeshCards
 from abut.io.deck.reasons import Reasons
 
 
-def nodal_thickness(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> dict[int, float]:
-    """Node -> thickness; the later of two holds."""
-    result: dict[int, float] = {}
+def nodal_thickness(cards: Sequence[Card], mesh: MeshCards, reasons: Reasons) -> dict[int, tuple[float, float]]:
+    """Node -> thickness, and that along the second direction of beams; the later of two holds."""
+    result: dict[int, tuple[float, float]] = {}
     for card in of(cards, "NODAL THICKNESS"):
         with reasons.gathered():
             for line in card.lines:
                 value = line.number(1, "thickness")
-                if not value > 0.0:
-                    raise line.error(f"thickness: expected a number > 0, got {value:g}")
-                result |= dict.fromkeys(mesh.existing(line, 0).tolist(), value)
+                second = line.number(2, "second thickness", value)
+                if not min(value, second) > 0.0:
+                    raise line.error(f"thickness: expected a number > 0, got {min(value, second):g}")
+                result |= dict.fromkeys(mesh.existing(line, 0).tolist(), (value, second))
     return result
 
 

@@ -39,7 +39,8 @@ READ: dict[str, tuple[str, ...]] = {
     "ORIENTATION": ("NAME", "SYSTEM", "DEFINITION", "LOCAL DIRECTIONS"),
     "DISTRIBUTION": ("NAME", "LOCATION", "TABLE", "INPUT"),
     **dict.fromkeys(
-        ("BEAM SECTION", "BEAM GENERAL SECTION"), ("ELSET", "MATERIAL", "ORIENTATION", "SECTION", "OFFSET1", "OFFSET2")
+        ("BEAM SECTION", "BEAM GENERAL SECTION"),
+        ("ELSET", "MATERIAL", "ORIENTATION", "SECTION", "OFFSET1", "OFFSET2", "NODAL THICKNESS"),
     ),
     "NODAL THICKNESS": (),
     "NORMAL": (),
@@ -75,7 +76,7 @@ READ: dict[str, tuple[str, ...]] = {
     "MASS": ("ELSET",),
     "CYCLIC SYMMETRY MODEL": ("N", "TIE", "ELSET", "NGRAPH"),
     "SELECT CYCLIC SYMMETRY MODES": ("NMIN", "NMAX"),  # of steps that ask for modes; others have none
-    "PRE-TENSION SECTION": ("SURFACE", "NODE"),
+    "PRE-TENSION SECTION": ("SURFACE", "ELEMENT", "NODE"),
     "EQUATION": (),
     "MPC": (),
     "RIGID BODY": ("NSET", "ELSET", "REF NODE", "ROT NODE"),

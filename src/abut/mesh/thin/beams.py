@@ -43,10 +43,11 @@ _HEX20 = (  # (which node of the line, which point of its section)
 @dataclass(frozen=True)
 class Beam:
     """cells: (n, 3) rows of points: start, end, middle. Of each: axis (n, 3), near which the first direction n1 of the
-    section lies; widths (n, 2) along n1 and n2 = tangent x n1 [length]; offsets (n, 2) of the nodes from the centre,
-    over these; walls (n, 4) of hollow ones at the sides -n1, -n2, n1, n2 [length], of a pipe all alike. form: a name in
-    ``OUTLINES``. Every node of round ones lies on the circle or ellipse, between the nodes there are parabolas: the area of
-    an ellipse is 1.2 % smaller, its second moments are 2.3 %, those of a pipe, of eight cells, 0.1 % and 0.2 %."""
+    section lies; widths (n, 2), or (n, 3, 2) at its nodes, along n1 and n2 = tangent x n1 [length]; offsets (n, 2) of the
+    nodes from the centre, over these; walls (n, 4) of hollow ones at the sides -n1, -n2, n1, n2 [length], of a pipe all
+    alike. form: a name in ``OUTLINES``. Every node of round ones lies on the circle or ellipse, between the nodes there are
+    parabolas: the area of an ellipse is 1.2 % smaller, its second moments are 2.3 %, those of a pipe, of eight cells, 0.1 %
+    and 0.2 %."""
 
     cells: Numbers
     axis: Vector
@@ -85,8 +86,9 @@ def expand_beams(points: Vector, beam: Beam) -> Sections:
         raise ValueError(int(np.flatnonzero(short.any(axis=1))[0]))
     tangents, second = tangents / lengths[..., None], second / sizes[..., None]
     node = beam.cells.ravel()
-    each = [beam.widths, beam.offsets * beam.widths, beam.walls]
-    own = np.repeat(np.concatenate(each, axis=1), 3, axis=0)
+    wide = beam.widths if beam.widths.ndim == 3 else beam.widths[:, None]
+    wide, aside = np.broadcast_arrays(wide, beam.offsets[:, None] * wide, np.empty((len(beam.cells), 3, 2)))[:2]
+    own = np.concatenate([wide, aside, np.repeat(beam.walls[:, None], 3, axis=1)], axis=2).reshape(3 * len(wide), -1)
     section, first = _sections(node, tangents.reshape(-1, 3), second.reshape(-1, 3), own)
     count = len(first)
     along, across = np.zeros((count, 3)), np.zeros((count, 3))
