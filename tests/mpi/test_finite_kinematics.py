@@ -142,8 +142,8 @@ LOOSE = {  # nothing holds the block against a pressure from the side
 
 
 def inside_out(notes: list[str]) -> list[str]:
-    """Notes of steps that failed so, without how far: iterations that diverge enlarge rounding."""
-    return [re.sub(r"det F = \S+ at", "", note) for note in notes if "inside out" in note]
+    """The first step that failed so, without how far: iterations that diverge enlarge rounding."""
+    return [note.partition(" turns inside out")[0] for note in notes if "inside out" in note][:1]
 
 
 def said(text: str) -> list[str]:

@@ -78,8 +78,8 @@ class Trial:
 class Step:
     """A load step to solve. before: the last converged state, its multipliers by the functions of ``frame``; limit: of
     iterations; careful: with a line search; drag: that it is led by, None without; asked: which laws hold. prepared: the
-    linear solver as it was last set up; done: its iterations, which grow, and the state
-    reached by the last one; failed: why it ended without a solution."""
+    linear solver as it was last set up; done: its iterations, which grow, and the state reached by the last one; failed: why
+    it ended without a solution; unsound: what was wrong with the material where it became careful."""
 
     problem: ContactProblem
     before: State
@@ -94,6 +94,7 @@ class Step:
     prepared: Prepared | None = None
     done: list[Iteration] = field(default_factory=list)
     failed: str = ""
+    unsound: str = ""
     reached: State | None = None
 
     @property
@@ -211,7 +212,7 @@ class LargeMotion(Method[Trial]):
         if step.failed:
             return here
         if there.unsound and not step.careful and step.rubs:
-            self._back = True
+            self._back, step.unsound = True, there.unsound
             return there
         if (step.careful and not self._swapped) or not np.isfinite(there.size):
             there = _shortened(step, here, there)
@@ -254,8 +255,9 @@ def _unsettled(step: Step, here: Trial, why: str = "iterations go round in a cir
     """Why iterations have ended without a solution."""
     why = f"{step.limit} iterations were not enough" if len(step.done) >= step.limit else why
     most = most_at(step.problem, here.forces, here.broken)
+    first = f"{step.unsound}; " if step.unsound else ""
     return (
-        f"{why}: {here.force:.1e} of the forces, {here.law:.1e} of the laws, {most}, and "
+        f"{first}{why}: {here.force:.1e} of the forces, {here.law:.1e} of the laws, {most}, and "
         f"{int(here.changed.sum())} multipliers that change"
     )
 
