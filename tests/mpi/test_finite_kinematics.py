@@ -142,8 +142,10 @@ LOOSE = {  # nothing holds the block against a pressure from the side
 
 
 def inside_out(notes: list[str]) -> list[str]:
-    """The first step that failed so, without how far: iterations that diverge enlarge rounding."""
-    return [note.partition(" turns inside out")[0] for note in notes if "inside out" in note][:1]
+    """The first step that failed so and its cell; how far it was, and after how many iterations, is of rounding, which
+    iterations that diverge enlarge."""
+    told = (re.search(r"(step \d+) .*\((cell .*?) turns inside out", note) for note in notes)
+    return [" ".join(found.groups()) for found in told if found][:1]
 
 
 def said(text: str) -> list[str]:
