@@ -11,7 +11,8 @@ import pytest
 import abut
 from abut.cli import main
 from abut.errors import InputError
-from abut.mesh.make import box, join, rectangle
+from abut.mesh.make import join, rectangle
+from models.bars_in_a_row import bars_in_a_row
 
 YOUNG, STIFFNESS, DAMPING, END = 1000.0, 50.0, 80.0, 4.0
 STEPS = np.array([0.5, 1.0, 2.0, 4.0])  # of unlike durations
@@ -113,17 +114,11 @@ def test_along_a_line_that_turns():
 
 def test_between_two_points():
     """In a row: a bar that is held, a dashpot between nodes, a bar that is drawn at a steady speed."""
-    bars = {"one": box([0, 4], [0, 1], [0, 1], cells=[2, 1, 1]), "two": box([6, 10], [0, 1], [0, 1], cells=[2, 1, 1])}
-    mesh = join(bars)
-    ends = {name: mesh.nodes_of(side) for name, side in (("left end", "one.right"), ("right end", "two.left"))}
-    mesh = replace(mesh, node_sets={**mesh.node_sets, **ends})
-    sides = [
-        abut.Support(f"{bar}.{side}", **{axis: 0}) for bar in bars for side, axis in (("front", "y"), ("bottom", "z"))
-    ]
+    mesh, sides = bars_in_a_row()
     steady = abut.Amplitude(((0.0, 1.0), (END, 1.0)))
     model = abut.Model(
         mesh,
-        [abut.Solid(bar, abut.LinearElastic(YOUNG, 0.0)) for bar in bars],
+        [abut.Solid(bar, abut.LinearElastic(YOUNG, 0.0)) for bar in mesh.bodies],
         [abut.Support("one.left", x=0), *sides],
         [abut.Force("two.right", (5.0, 0.0, 0.0), amplitude=steady)],
         springs=[abut.Spring("link", "left end", to="right end", along=20.0, dashpot=True)],

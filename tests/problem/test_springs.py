@@ -10,6 +10,7 @@ import pytest
 import abut
 from abut.errors import InputError
 from abut.mesh.make import box, join, rectangle
+from models.bars_in_a_row import bars_in_a_row
 
 YOUNG, LENGTH, AREA = 1000.0, 4.0, 2.0
 EXACT = 1e-8  # stresses are uniform, and springs integrated exactly
@@ -67,16 +68,10 @@ def test_a_table_bends_and_goes_on(kinematics):
 
 def test_two_bars_with_a_spring_between_their_ends():
     """In a row along x: bar, spring along the line between two nodes, bar: u = F (2 L / E A + 1 / k)."""
-    bars = {"one": box([0, 4], [0, 1], [0, 1], cells=[2, 1, 1]), "two": box([6, 10], [0, 1], [0, 1], cells=[2, 1, 1])}
-    mesh = join(bars)
-    ends = {name: mesh.nodes_of(side) for name, side in (("left end", "one.right"), ("right end", "two.left"))}
-    mesh = replace(mesh, node_sets={**mesh.node_sets, **ends})
-    sides = [
-        abut.Support(f"{bar}.{side}", **{axis: 0}) for bar in bars for side, axis in (("front", "y"), ("bottom", "z"))
-    ]
+    mesh, sides = bars_in_a_row()
     model = abut.Model(
         mesh,
-        [abut.Solid(bar, abut.LinearElastic(YOUNG, 0.0)) for bar in bars],
+        [abut.Solid(bar, abut.LinearElastic(YOUNG, 0.0)) for bar in mesh.bodies],
         [abut.Support("one.left", x=0), *sides],
         [abut.Force("two.right", (5.0, 0.0, 0.0))],
         springs=[abut.Spring("link", "left end", to="right end", along=20.0)],
